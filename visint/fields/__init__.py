@@ -1,0 +1,32 @@
+"""Field kinds, evidence and geometry: the words in which vision modules talk to each other."""
+
+from visint.fields.camera import Camera
+from visint.fields.evidence import (
+    BoundariesEvidence,
+    DepthEvidence,
+    DisparityEvidence,
+    Evidence,
+    NormalsEvidence,
+    ReliefEvidence,
+    SlopesEvidence,
+    known,
+)
+from visint.fields.kinds import KINDS, FieldKind, down, up
+from visint.fields.light import Light
+
+__all__ = [
+    "KINDS",
+    "BoundariesEvidence",
+    "Camera",
+    "DepthEvidence",
+    "DisparityEvidence",
+    "Evidence",
+    "FieldKind",
+    "Light",
+    "NormalsEvidence",
+    "ReliefEvidence",
+    "SlopesEvidence",
+    "down",
+    "known",
+    "up",
+]
