@@ -6,7 +6,9 @@ annotated with an :class:`ArraySpec` that pydantic holds every value against.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import numpy as np
@@ -14,6 +16,7 @@ from numpy.typing import NDArray
 from pydantic_core import core_schema
 
 __all__ = [
+    "SPECS",
     "Array",
     "ArrayKind",
     "ArraySpec",
@@ -124,6 +127,11 @@ class ArrayKind:
     def __init__(self, kind: str, dtype: str, dims: str, unit: str = "1") -> None:
         self.spec = ArraySpec(kind, dtype, _dims(dims), unit)
 
+    @classmethod
+    def of(cls, spec: ArraySpec) -> ArrayKind:
+        """The kind whose default spec is ``spec``."""
+        return cls(spec.kind, spec.dtype, " ".join(map(str, spec.dims)), spec.unit)
+
     def __getitem__(self, item: tuple[Any, str]) -> Any:
         array, dims = item
         spec = ArraySpec(self.spec.kind, self.spec.dtype, _dims(dims), self.spec.unit)
@@ -138,6 +146,29 @@ class ArrayKind:
 def _dims(text: str) -> tuple[str | int, ...]:
     return tuple(int(word) if word.isdigit() else word for word in text.split())
 
+
+SPECS: Mapping[str, ArraySpec] = MappingProxyType(
+    {
+        kind: ArraySpec(kind, dtype, _dims(dims), unit)
+        for kind, dtype, dims, unit in (
+            ("Image", "float32", "H W", "1"),
+            ("Color", "float32", "H W 3", "1"),
+            ("Features", "float32", "H W C", "1"),
+            ("Depth", "float32", "H W", "baseline"),
+            ("Relief", "float32", "H W", "1"),
+            ("Disparity", "float32", "H W", "px"),
+            ("Normals", "float32", "H W 3", "1"),
+            ("Slopes", "float32", "H W 2", "baseline/px"),
+            ("Boundaries", "bool", "H W", "1"),
+            ("Regions", "int32", "H W", "1"),
+            ("Mask", "bool", "H W", "1"),
+            ("Confidence", "float32", "H W", "1"),
+            ("Sigma", "float32", "H W", "1"),
+            ("Scalars", "float64", "N", "1"),
+        )
+    }
+)
+"""The built-in array kinds by name."""
 
 if TYPE_CHECKING:
     from typing import Annotated as Boundaries
@@ -155,17 +186,8 @@ if TYPE_CHECKING:
     from typing import Annotated as Sigma
     from typing import Annotated as Slopes
 else:
-    Image = ArrayKind("Image", "float32", "H W", "1")
-    Color = ArrayKind("Color", "float32", "H W 3", "1")
-    Features = ArrayKind("Features", "float32", "H W C", "1")
-    Depth = ArrayKind("Depth", "float32", "H W", "baseline")
-    Relief = ArrayKind("Relief", "float32", "H W", "1")
-    Disparity = ArrayKind("Disparity", "float32", "H W", "px")
-    Normals = ArrayKind("Normals", "float32", "H W 3", "1")
-    Slopes = ArrayKind("Slopes", "float32", "H W 2", "baseline/px")
-    Boundaries = ArrayKind("Boundaries", "bool", "H W", "1")
-    Regions = ArrayKind("Regions", "int32", "H W", "1")
-    Mask = ArrayKind("Mask", "bool", "H W", "1")
-    Confidence = ArrayKind("Confidence", "float32", "H W", "1")
-    Sigma = ArrayKind("Sigma", "float32", "H W", "1")
-    Scalars = ArrayKind("Scalars", "float64", "N", "1")
+    Image, Color, Features = (ArrayKind.of(SPECS[name]) for name in ("Image", "Color", "Features"))
+    Depth, Relief, Disparity = (ArrayKind.of(SPECS[name]) for name in ("Depth", "Relief", "Disparity"))
+    Normals, Slopes = (ArrayKind.of(SPECS[name]) for name in ("Normals", "Slopes"))
+    Boundaries, Regions, Mask = (ArrayKind.of(SPECS[name]) for name in ("Boundaries", "Regions", "Mask"))
+    Confidence, Sigma, Scalars = (ArrayKind.of(SPECS[name]) for name in ("Confidence", "Sigma", "Scalars"))

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, Self
 
 __all__ = [
     "CODES",
@@ -162,7 +162,7 @@ class VisintError(Exception):
         super().__init__("\n".join(str(problem) for problem in self.problems))
 
     @classmethod
-    def of(cls, code: str, found: str, *, where: str = "", choices: str = "", write: str = "") -> VisintError:
+    def of(cls, code: str, found: str, *, where: str = "", choices: str = "", write: str = "") -> Self:
         """An error with one problem, whose fault follows from the class."""
         return cls(Problem(code, found, Where(where), choices, write, cls.fault))
 
@@ -212,7 +212,7 @@ class OutputError(VisintError):
     fault = "output"
 
 
-class Cancelled(VisintError):
+class Cancelled(VisintError):  # noqa: N818 - being interrupted is no error
     """The run was interrupted; nothing half-written is left."""
 
     exit_code = 130

@@ -26,7 +26,7 @@ __all__ = [
 
 
 class RunStarted(NamedTuple):
-    """The run begins. ``nodes`` are the names in the order of the schedule, ``calls`` the most calls of ``run``."""
+    """The run begins. ``nodes`` are in the order of the schedule, ``calls`` is the most calls of ``run``."""
 
     graph: str
     nodes: tuple[str, ...]
@@ -53,7 +53,7 @@ class NodeFinished(NamedTuple):
     outputs: Any
 
     def summary(self) -> Mapping[str, str]:
-        """A few words an output port: kind of value, shape, range of the known. Costs a pass over the arrays."""
+        """A few words an output port: type, shape, range of the known. Costs a pass over the arrays."""
         return {name: _summary(value) for name, value in self.outputs.__dict__.items()}
 
 

@@ -146,7 +146,7 @@ def _agreement(specs: Mapping[str, PortSpec]) -> Callable[[Mapping[str, Any]], N
     ]
     named = [dim for _, many, _, dims in plan for _, dim in dims * (1 + many)]
     if len(named) == len(set(named)):
-        return lambda values: None
+        return _always
 
     def agree(values: Mapping[str, Any]) -> None:
         sizes: dict[str, tuple[int, str]] = {}
@@ -166,6 +166,10 @@ def _agreement(specs: Mapping[str, PortSpec]) -> Callable[[Mapping[str, Any]], N
     return agree
 
 
+def _always(values: Mapping[str, Any]) -> None:
+    pass
+
+
 class Context:
     """What the engine tells a module about where it runs, and where the module may speak up.
 
@@ -181,7 +185,7 @@ class Context:
 
     __slots__ = ("_cancelled", "_note", "_per_turn", "_seed", "_turn", "level", "size")
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - keyword-only facts about a call, built by the engine and by tests
         self,
         *,
         level: int = 0,
@@ -278,7 +282,7 @@ class Module(ABC, Generic[P, I, O]):
                 cls.Params, cls.Inputs, cls.Outputs = get_args(base)
 
     def __init__(self, params: P | None = None) -> None:
-        self.params: P = params if params is not None else typing.cast(P, type(self).Params())
+        self.params: P = params if params is not None else typing.cast("P", type(self).Params())
 
     @abstractmethod
     def run(self, inputs: I, ctx: Context) -> O:

@@ -32,7 +32,7 @@ __all__ = [
 
 
 def known(value: Array) -> Array:
-    """bool (H, W): where a field has a value, that is, no NaN in any channel.
+    """Bool (H, W): where a field has a value, that is, no NaN in any channel.
 
     ``value`` is any array of two axes or more; booleans and integers are known everywhere.
     """

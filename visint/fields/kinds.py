@@ -36,8 +36,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from visint import arrays
-from visint.arrays import Array, ArrayKind, ArraySpec
+from visint.arrays import SPECS, Array, ArraySpec, read_only
 from visint.fields import resampling as rs
 from visint.fields.evidence import Evidence
 
@@ -54,7 +53,7 @@ def _same(value: Any) -> Any:
     return value
 
 
-def _same_up(value: Any, size: Size) -> Any:
+def _same_up(value: Any, size: Size) -> Any:  # noqa: ARG001 - the form of every rule upwards
     return value
 
 
@@ -99,34 +98,31 @@ class FieldKind:
         return rs.renormalised(fine) if self.name == "Normals" else fine
 
 
-def _continuous(kind: ArrayKind, finer: float = 1.0, constrains: str = "") -> FieldKind:
-    name = kind.spec.kind
-    return FieldKind(name, kind.spec, rs.block_mean, rs.linear_up, finer, True, constrains)
+def _continuous(name: str, finer: float = 1.0, constrains: str = "") -> FieldKind:
+    return FieldKind(name, SPECS[name], rs.block_mean, rs.linear_up, finer, True, constrains)
 
 
 def _table() -> dict[str, FieldKind]:
     kinds = [
-        _continuous(arrays.Image),
-        _continuous(arrays.Color),
-        _continuous(arrays.Features),
-        _continuous(arrays.Depth, constrains="depth"),
-        _continuous(arrays.Disparity, finer=2.0, constrains="depth"),
-        _continuous(arrays.Relief, constrains="depth"),
+        _continuous("Image"),
+        _continuous("Color"),
+        _continuous("Features"),
+        _continuous("Depth", constrains="depth"),
+        _continuous("Disparity", finer=2.0, constrains="depth"),
+        _continuous("Relief", constrains="depth"),
         replace(
-            _continuous(arrays.Normals, constrains="depth"),
+            _continuous("Normals", constrains="depth"),
             down=lambda normals: rs.renormalised(rs.block_mean(normals)),
         ),
-        _continuous(arrays.Slopes, finer=0.5, constrains="depth"),
-        FieldKind("Boundaries", arrays.Boundaries.spec, rs.any_down, rs.nearest_up, constrains="boundaries"),
-        FieldKind(
-            "Regions", arrays.Regions.spec, rs.most_frequent_down, rs.nearest_up, constrains="boundaries"
-        ),
-        FieldKind("Mask", arrays.Mask.spec, rs.any_down, rs.nearest_up),
-        _continuous(arrays.Confidence),
-        _continuous(arrays.Sigma),
+        _continuous("Slopes", finer=0.5, constrains="depth"),
+        FieldKind("Boundaries", SPECS["Boundaries"], rs.any_down, rs.nearest_up, constrains="boundaries"),
+        FieldKind("Regions", SPECS["Regions"], rs.most_frequent_down, rs.nearest_up, constrains="boundaries"),
+        FieldKind("Mask", SPECS["Mask"], rs.any_down, rs.nearest_up),
+        _continuous("Confidence"),
+        _continuous("Sigma"),
         FieldKind("Camera", None, lambda camera: camera.halved(), lambda camera, size: camera.doubled(size)),
         FieldKind("Light"),
-        FieldKind("Scalars", arrays.Scalars.spec),
+        FieldKind("Scalars", SPECS["Scalars"]),
         FieldKind("Scalar"),
         FieldKind("Flag"),
         FieldKind("Text"),
@@ -165,4 +161,4 @@ def up(value: Any, kind: FieldKind, size: Size, how: Interpolation | None = None
 
 
 def _frozen(value: Any) -> Any:
-    return arrays.read_only(value) if isinstance(value, np.ndarray) else value
+    return read_only(value) if isinstance(value, np.ndarray) else value

@@ -73,4 +73,5 @@ class Light(BaseModel):
         if self.place == "distant":
             return vector
         towards = vector - points
-        return (towards / np.linalg.norm(towards, axis=-1, keepdims=True)).astype(np.float32)
+        unit: Array = (towards / np.linalg.norm(towards, axis=-1, keepdims=True)).astype(np.float32)
+        return unit

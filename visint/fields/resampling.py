@@ -61,7 +61,7 @@ def block_mean(value: Array) -> Array:
 
 def any_down(value: Array) -> Array:
     """bool: whether any pixel of the block is set. Thin lines live on."""
-    return _blocks(value).any(axis=0)
+    return np.asarray(_blocks(value).any(axis=0))
 
 
 def most_frequent_down(value: Array) -> Array:
@@ -77,7 +77,7 @@ def most_frequent_down(value: Array) -> Array:
     rank[order] = np.arange(len(labels))
     score = votes.astype(np.int64) * (len(labels) + 1) - rank[index.reshape(blocks.shape)]
     best = score.argmax(axis=0)
-    return np.take_along_axis(blocks, best[None], axis=0)[0].astype(np.int32)
+    return np.asarray(np.take_along_axis(blocks, best[None], axis=0)[0], dtype=np.int32)
 
 
 def nearest_up(value: Array, size: Size) -> Array:
@@ -140,7 +140,7 @@ def renormalised(normals: Array) -> Array:
 
 
 def region_boundaries(regions: Array) -> Array:
-    """bool (H, W): label 0, and pixels whose right or lower neighbour has another label."""
+    """Bool (H, W): label 0, and pixels whose right or lower neighbour has another label."""
     edges = regions == 0
     edges[:, :-1] |= regions[:, :-1] != regions[:, 1:]
     edges[:-1] |= regions[:-1] != regions[1:]
