@@ -1,0 +1,71 @@
+"""npy: one array as numpy stores it, never unpickled; its size is checked before memory is taken."""
+
+from __future__ import annotations
+
+import io
+import math
+import warnings
+from typing import Any
+
+import numpy as np
+from numpy.lib import format as npy_format
+
+from visint.arrays import Array, read_only
+from visint.io.limits import Limits
+from visint.io.refusals import broken, inexact
+
+__all__ = ["encode_npy", "npy_array"]
+
+_PLAIN = "biufc"
+_HEADER_BYTES = 16_384
+_HEADERS = {(1, 0): npy_format.read_array_header_1_0, (2, 0): npy_format.read_array_header_2_0}
+
+
+def npy_array(data: bytes, name: str, limits: Limits) -> Array:
+    """The array of an npy file: of numbers or booleans, any shape, in this machine's byte order; read-only.
+
+    Raises
+    ------
+    InputError
+        VI302 if it is damaged, holds objects or records, or more or fewer bytes than its header claims;
+        VI303 if it is too large.
+    """
+    shape, fortran, dtype, start = _header(data, name)
+    size = math.prod(shape) * dtype.itemsize
+    limits.check_size(name, size)
+    if len(data) - start != size:
+        found = f"holds {len(data) - start} bytes of values where its npy header claims {size}"
+        raise broken(name, found)
+    flat = np.frombuffer(data, dtype, math.prod(shape), start) if size else np.empty(0, dtype)
+    return read_only(flat.reshape(shape, order="F" if fortran else "C").astype(dtype.newbyteorder("=")))
+
+
+def _header(data: bytes, name: str) -> tuple[tuple[int, ...], bool, np.dtype[Any], int]:
+    stream = io.BytesIO(data[:_HEADER_BYTES])
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            version = npy_format.read_magic(stream)
+            shape, fortran, dtype = _HEADERS[version](stream)
+    except Exception:  # the header is a Python literal: a hostile one fails in many ways
+        raise broken(name, "has a damaged npy header") from None
+    if dtype.kind not in _PLAIN or dtype.names or dtype.subdtype:
+        raise broken(name, f"holds {'objects' if dtype.hasobject else dtype}; wants plain numbers or booleans")
+    if any(type(n) is not int or n < 0 for n in shape) or len(shape) > 32:
+        raise broken(name, "has a damaged npy header: no such shape")
+    return shape, fortran, dtype, stream.tell()
+
+
+def encode_npy(array: Array) -> bytes:
+    """An npy file of exactly this array: plain numbers or booleans, any shape.
+
+    Raises
+    ------
+    OutputError
+        VI603 for arrays of objects, texts or records.
+    """
+    if array.dtype.kind not in _PLAIN:
+        raise inexact(f"an array of {array.dtype} is not written; wants plain numbers or booleans")
+    stream = io.BytesIO()
+    npy_format.write_array(stream, np.asarray(array, order="C"), version=(1, 0), allow_pickle=False)
+    return stream.getvalue()
