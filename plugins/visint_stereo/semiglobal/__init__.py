@@ -1,0 +1,1 @@
+"""The parts of semi-global matching: costs, winners, consistency, filling, search range, reliability."""

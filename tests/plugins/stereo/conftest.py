@@ -1,0 +1,110 @@
+"""Pairs for the stereo tests: made up with known answers, and real ones where the data is there."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from visint.arrays import Array
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A pair with truth: linear float32 views, true disparity (NaN unknown), and how many levels it needs."""
+
+    left: Array
+    right: Array
+    truth: Array
+    levels: int
+
+
+def waves(rows: int, columns: int, shift: float, seed: int = 1) -> Array:
+    """Sinusoids of many directions, moved right by ``shift`` px; in [0, 1], never repeating in the image."""
+    rng = np.random.default_rng(seed)
+    x, y = np.meshgrid(np.arange(columns) - shift, np.arange(rows))
+    image = np.zeros((rows, columns))
+    for _ in range(14):
+        length, angle, phase = rng.uniform(7, 40), rng.uniform(-1.2, 1.2), rng.uniform(0, 6.3)
+        image += np.sin((x * np.cos(angle) + y * np.sin(angle)) * 2 * np.pi / length + phase)
+    return (0.5 + image / 16).clip(0, 1).astype(np.float32)
+
+
+@pytest.fixture
+def shifted() -> Callable[[float], tuple[Array, Array]]:
+    """shift -> (left, right) whose true disparity is ``shift`` everywhere."""
+    return lambda shift: (waves(96, 160, 0), waves(96, 160, -shift))
+
+
+def _data() -> Path:
+    root = Path(__file__).parents[3]
+    return Path(os.environ.get("VISINT_DATA", root / "../shared/data"))
+
+
+def _linear(path: Path) -> Array:
+    import cv2
+
+    grades = cv2.imread(str(path))[..., ::-1] / 255.0
+    linear = np.where(grades <= 0.04045, grades / 12.92, ((grades + 0.055) / 1.055) ** 2.4)
+    return np.ascontiguousarray(linear @ [0.2126, 0.7152, 0.0722], dtype=np.float32)
+
+
+def _pfm(path: Path) -> Array:
+    with path.open("rb") as file:
+        file.readline()
+        columns, rows = map(int, file.readline().split())
+        order = "<f4" if float(file.readline()) < 0 else ">f4"
+        values = np.frombuffer(file.read(), order).reshape(rows, columns)[::-1].astype(np.float32)
+    return np.where(np.isfinite(values), values, np.nan)
+
+
+def _truth(folder: Path) -> Array:
+    import cv2
+
+    if (folder / "disp_left.pfm").exists():
+        return _pfm(folder / "disp_left.pfm")
+    grades = cv2.imread(str(folder / "disp_left.png"), cv2.IMREAD_GRAYSCALE).astype(np.float32)
+    scale = {"mb2003": 4, "mb2005": 3, "mb2006": 3}[folder.parent.name]
+    return np.where(grades > 0, grades / scale, np.nan)
+
+
+@pytest.fixture(scope="session")
+def real_pair() -> Callable[[str], Pair]:
+    """ "collection/scene" -> the pair; skips where the data is absent."""
+
+    def load(scene: str) -> Pair:
+        folder = _data() / scene
+        if not folder.exists():
+            pytest.skip(f"{scene} is not among the data; set VISINT_DATA")
+        truth = _truth(folder).astype(np.float32)
+        levels = -(-int(np.nanmax(truth) + 2) // 16) * 16
+        return Pair(_linear(folder / "left.png"), _linear(folder / "right.png"), truth, levels)
+
+    return load
+
+
+@pytest.fixture(scope="session")
+def filled() -> Callable[[Array], Array]:
+    """Disparity with its holes filled by the smaller row neighbour, as the peers' are."""
+
+    def fill(disparity: Array) -> Array:
+        from visint_stereo.semiglobal.fill import from_behind
+
+        return np.nan_to_num(from_behind(np.nan_to_num(disparity), np.isfinite(disparity)))
+
+    return fill
+
+
+@pytest.fixture(scope="session")
+def bad() -> Callable[[Array, Array], float]:
+    """Share of pixels of known truth that are off by more than 2 px, in percent."""
+
+    def share(disparity: Array, truth: Array) -> float:
+        known = np.isfinite(truth)
+        return 100 * float((~(np.abs(disparity - truth) <= 2))[known].mean())
+
+    return share
