@@ -33,27 +33,36 @@ def depth_from_disparity(disparity: Array, camera: Camera) -> Array:
     shifted = disparity.astype(np.float64) + camera.doffs
     with np.errstate(divide="ignore", invalid="ignore"):
         depth = camera.focal_length * camera.baseline / shifted
-    return np.where(shifted > 0, depth, np.nan).astype(np.float32)
+    return _single(np.where(shifted > 0, depth, np.nan))
 
 
 def disparity_from_depth(depth: Array, camera: Camera) -> Array:
     """Disparity (H, W) in pixels from depth (H, W); NaN where depth is NaN or not positive."""
     with np.errstate(divide="ignore", invalid="ignore"):
         disparity = camera.focal_length * camera.baseline / depth.astype(np.float64) - camera.doffs
-    return np.where(depth > 0, disparity, np.nan).astype(np.float32)
+    return _single(np.where(depth > 0, disparity, np.nan))
+
+
+def _single(value: Array) -> Array:
+    """float32, NaN where the value is too large to be one."""
+    largest = np.finfo(np.float32).max
+    return np.where(np.abs(value) <= largest, value, np.nan).astype(np.float32)
 
 
 def depth_evidence(evidence: DisparityEvidence, camera: Camera) -> DepthEvidence:
     """The same evidence as depth, its sigma carried along: σ_Z = Z² σ_d / (f B)."""
     depth = depth_from_disparity(evidence.value, camera)
-    sigma = depth**2 * evidence.sigma / (camera.focal_length * camera.baseline)
+    with np.errstate(over="ignore"):  # almost at infinity sigma may be infinite: the evidence abstains
+        sigma = depth * (depth * (evidence.sigma / np.float32(camera.focal_length * camera.baseline)))
     return DepthEvidence.of(depth, sigma, evidence.reliability)
 
 
 def disparity_evidence(evidence: DepthEvidence, camera: Camera) -> DisparityEvidence:
     """The same evidence as disparity, its sigma carried along: σ_d = f B σ_Z / Z²."""
     disparity = disparity_from_depth(evidence.value, camera)
-    sigma = camera.focal_length * camera.baseline * evidence.sigma / evidence.value**2
+    with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+        nearness = np.float32(camera.focal_length * camera.baseline) / evidence.value
+        sigma = nearness * evidence.sigma / evidence.value
     return DisparityEvidence.of(disparity, sigma, evidence.reliability)
 
 
@@ -105,8 +114,15 @@ def normals_from_slopes(depth: Array, slopes: Array, camera: Camera) -> Array:
 
 
 def normals_from_depth(depth: Array, camera: Camera) -> Array:
-    """Unit normals (H, W, 3) facing the camera, from depth (H, W) by central differences."""
-    return normals_from_slopes(depth, slopes_from_depth(depth), camera)
+    """Unit normals (H, W, 3) facing the camera, from depth (H, W); NaN where it is not known or not positive.
+
+    Differences are taken of 1/Z, which is linear over the image of any plane: Z_u/Z = −Z ∂(1/Z)/∂u. So
+    planes come out exact, on coarse levels and at the edge of the known too.
+    """
+    with np.errstate(divide="ignore", over="ignore"):
+        nearness = _single(np.where(depth > 0, 1 / depth, np.nan))
+    relative = -depth[..., None] * slopes_from_depth(nearness)
+    return normals_from_slopes(np.ones_like(depth), relative, camera)
 
 
 def slopes_from_normals(depth: Array, normals: Array, camera: Camera) -> Array:
