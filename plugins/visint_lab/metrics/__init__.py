@@ -1,0 +1,3 @@
+"""Metrics: how far a reconstruction lies from the truth. One file a family."""
+
+MODULES = ()

@@ -1,0 +1,1 @@
+"""Rays and the surfaces they meet."""

@@ -1,0 +1,1 @@
+"""Rendering of scenes with exact truth."""
