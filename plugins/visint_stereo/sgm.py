@@ -11,6 +11,7 @@ from visint.module import Context, Module, Params, Ports
 from visint_stereo.semiglobal.brightness import graded
 from visint_stereo.semiglobal.consistency import agreed, occluded, without_speckles
 from visint_stereo.semiglobal.fill import from_behind
+from visint_stereo.semiglobal.refine import refined
 from visint_stereo.semiglobal.reliability import contrast, reliability
 from visint_stereo.semiglobal.search_range import estimated, within
 from visint_stereo.semiglobal.volume import Levels, Penalties, Volume, census, matching_costs, path_costs
@@ -97,10 +98,12 @@ class SemiGlobal(Module[SemiGlobalParams, SemiGlobalInputs, SemiGlobalOutputs]):
         seen = np.isfinite(inputs.left) & (contrast(left) > 0)
         trusted = seen & agreed(won.disparity, won.right, self.params.tolerance)
         trusted = without_speckles(won.disparity, trusted, self.params.speckle // ctx.scale**2)
-        disparity = from_behind(won.disparity, trusted)
+        views = [view.astype(np.float32) / 16 for view in (left, right)]
+        fine, sigma = refined(won.disparity, trusted, *views)
+        disparity = from_behind(fine, trusted)
         trust = np.where(seen, reliability(left, won, trusted, disparity), 0)
         return SemiGlobalOutputs(
-            disparity=DisparityEvidence.of(disparity, np.where(trusted, 0.4, 4.0), trust),
+            disparity=DisparityEvidence.of(disparity, np.where(trusted, sigma, 4.0), trust),
             consistent=trusted,
             occluded=occluded(won.disparity, won.right, trusted),
         )
@@ -122,4 +125,4 @@ class SemiGlobal(Module[SemiGlobalParams, SemiGlobalInputs, SemiGlobalOutputs]):
         penalties = self.params.penalties()
         cost = matching_costs(census(left), census(right), levels, penalties.outside)
         ctx.check()
-        return Volume(levels, cost, path_costs(cost, left, penalties, ctx.check))
+        return Volume(levels, path_costs(cost, left, penalties, ctx.check))

@@ -243,3 +243,25 @@ def between_levels(total, shape, best, first, disparity):
                 if top > 0:
                     value += np.float32(0.5) * (before - after) / top
             disparity[y, x] = value
+
+
+@njit(cache=True, nogil=True)
+def warp(image, disparity, values, slopes):
+    """``image`` and its slope along the row at x - d, by Catmull-Rom cubics; all float32 (H, W)."""
+    rows, columns = image.shape
+    last = columns - 1
+    half, two = np.float32(0.5), np.float32(2)
+    for y in range(rows):
+        for x in range(columns):
+            place = np.float32(x) - disparity[y, x]
+            left = np.int64(np.floor(place))
+            t = place - np.float32(left)
+            a = image[y, min(max(left - 1, 0), last)]
+            b = image[y, min(max(left, 0), last)]
+            c = image[y, min(max(left + 1, 0), last)]
+            d = image[y, min(max(left + 2, 0), last)]
+            c1 = half * (c - a)
+            c2 = a - np.float32(2.5) * b + two * c - half * d
+            c3 = half * (d - a) + np.float32(1.5) * (b - c)
+            values[y, x] = b + t * (c1 + t * (c2 + t * c3))
+            slopes[y, x] = c1 + t * (two * c2 + np.float32(3) * t * c3)

@@ -57,10 +57,9 @@ class Penalties:
 
 @dataclass(frozen=True, slots=True)
 class Volume:
-    """Path costs of every pixel and level: ``cost`` uint8 and ``total`` uint16, both (H, W, D)."""
+    """Path costs of every pixel and level: ``total`` uint16 (H, W, D)."""
 
     levels: Levels
-    cost: Array
     total: Array
 
 
