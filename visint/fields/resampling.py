@@ -67,17 +67,41 @@ def any_down(value: Array) -> Array:
 def most_frequent_down(value: Array) -> Array:
     """int32: the most frequent label of the block; among equals the rarer in the whole map, then the smaller.
 
-    Preferring the rarer keeps small regions alive through many levels. Label 0 (boundary) counts as a label.
+    A label that no block would keep gets one of the blocks it occurs in, as long as there is room: so small
+    regions live on through many levels. Label 0 (boundary) counts as a label.
     """
     blocks = _blocks(value)
     votes = (blocks[:, None] == blocks[None, :]).sum(axis=1)
     labels, index, area = np.unique(blocks, return_inverse=True, return_counts=True)
-    order = np.lexsort((labels, area))
+    index = index.reshape(4, -1)
     rank = np.empty(len(labels), dtype=np.int64)
-    rank[order] = np.arange(len(labels))
-    score = votes.astype(np.int64) * (len(labels) + 1) - rank[index.reshape(blocks.shape)]
-    best = score.argmax(axis=0)
-    return np.asarray(np.take_along_axis(blocks, best[None], axis=0)[0], dtype=np.int32)
+    rank[np.lexsort((labels, area))] = np.arange(len(labels))
+    score = votes.reshape(4, -1) * (len(labels) + 1) - rank[index]
+    best = np.take_along_axis(index, score.argmax(axis=0)[None], axis=0)[0]
+    kept = _with_the_lost(best, index, len(labels))
+    return labels[kept].reshape(blocks.shape[1:]).astype(np.int32)
+
+
+def _with_the_lost(winners: Array, members: Array, labels: int) -> Array:
+    """``winners`` (N), the label of each block, with a block for every label that won none.
+
+    Each takes the block where it has most of the four ``members`` (4, N), unless that one was taken so, or
+    is the last of its present label. Where two want one block the other tries again.
+    """
+    taken = np.zeros(len(winners), dtype=bool)
+    for _ in range(4):
+        count = np.bincount(winners, minlength=labels)
+        free = ~taken & (count[winners] > 1)
+        pixel, block = np.nonzero((count[members] == 0) & free)
+        if not len(block):
+            break
+        label = members[pixel, block]
+        votes = (members[:, block] == label).sum(axis=0)
+        order = np.lexsort((block, -votes, label))
+        wanted = order[np.unique(label[order], return_index=True)[1]]
+        spot, first = np.unique(block[wanted], return_index=True)
+        winners[spot], taken[spot] = label[wanted][first], True
+    return winners
 
 
 def nearest_up(value: Array, size: Size) -> Array:
