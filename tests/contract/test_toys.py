@@ -97,16 +97,16 @@ class TestScalars:
 
 class TestWitnesses:
     def test_turn_and_level_repeat_what_the_context_says(self):
-        ctx = Context(level=2, size=(6, 8), turn=5)
+        ctx = Context(level=2, size=(6, 8), turns=(9, 5))
         assert run(toys.Turn, ctx=ctx).value == 5
         seen = run(toys.Level, ctx=ctx)
         assert (seen.level, seen.rows, seen.columns) == (2, 6, 8)
         assert run(toys.Level).rows == 0
 
     def test_noise_is_the_runs_and_the_turns(self):
-        first = [run(toys.Noise, ctx=Context(seed=(1,), turn=t)).value for t in range(3)]
+        first = [run(toys.Noise, ctx=Context(seed=(1,), turns=(t,))).value for t in range(3)]
         assert len(set(first)) == 3
-        assert first == [run(toys.Noise, ctx=Context(seed=(1,), turn=t)).value for t in range(3)]
+        assert first == [run(toys.Noise, ctx=Context(seed=(1,), turns=(t,))).value for t in range(3)]
 
     def test_sleep_ends_when_the_run_is_interrupted(self):
         """A long sleep is left at the first check after the interruption."""

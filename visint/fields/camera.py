@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import ClassVar, Self
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 __all__ = ["Camera"]
 
@@ -45,6 +45,13 @@ class Camera(BaseModel):
     doffs: float = 0.0
     disparity_range: tuple[float, float] | None = None
     unit: str = "mm"
+
+    @model_validator(mode="after")
+    def _range_ascends(self) -> Self:
+        span = self.disparity_range
+        if span is not None and span[0] > span[1]:
+            raise ValueError(f"disparity_range is (smallest, largest); {span} falls")
+        return self
 
     @classmethod
     def uncalibrated(

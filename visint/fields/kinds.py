@@ -88,14 +88,18 @@ class FieldKind:
     def downward(self, value: Any) -> Any:
         """``value`` one level coarser; arrays keep their dtype."""
         coarse = self.down(value)
-        return coarse if self.finer == 1.0 else coarse * np.float32(1 / self.finer)
+        return self._typed(coarse if self.finer == 1.0 else coarse * np.float32(1 / self.finer))
 
     def upward(self, value: Any, size: Size, how: Interpolation | None = None) -> Any:
         """``value`` one level finer, of ``size`` (rows, columns); ``how`` overrides the kind's own rule."""
         rule = _UPWARD[how] if how and self.interpolated else self.up
         fine = rule(value, size)
         fine = fine if self.finer == 1.0 else fine * np.float32(self.finer)
-        return rs.renormalised(fine) if self.name == "Normals" else fine
+        return self._typed(rs.renormalised(fine) if self.name == "Normals" else fine)
+
+    def _typed(self, value: Any) -> Any:
+        """The rules calculate in float32; a kind of another dtype gets its own back."""
+        return value if self.array is None else value.astype(self.array.dtype, copy=False)
 
 
 def _continuous(name: str, finer: float = 1.0, constrains: str = "") -> FieldKind:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, model_validator
 
 from visint.arrays import Array
 
@@ -26,6 +26,14 @@ class Light(BaseModel):
     place: Literal["distant", "point", "unknown"]
     vector: tuple[float, float, float] | None = None
 
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        if (self.vector is None) != (self.place == "unknown"):
+            raise ValueError("a distant light and one at a point have a vector, an unknown one has none")
+        if self.place == "distant" and abs(math.hypot(*(self.vector or ())) - 1) > 1e-6:
+            raise ValueError("the vector of a distant light has length 1; Light.distant(x, y, z) makes it so")
+        return self
+
     @classmethod
     def distant(cls, x: float, y: float, z: float) -> Light:
         """A light infinitely far away in direction (x, y, z); normalised here.
@@ -35,7 +43,7 @@ class Light(BaseModel):
         ValueError
             If the vector is zero or not finite.
         """
-        length = math.sqrt(x * x + y * y + z * z)
+        length = math.hypot(x, y, z)
         if not (length > 0 and math.isfinite(length)):
             raise ValueError(f"a distant light wants a direction; ({x}, {y}, {z}) is none")
         return cls(place="distant", vector=(x / length, y / length, z / length))
@@ -73,5 +81,6 @@ class Light(BaseModel):
         if self.place == "distant":
             return vector
         towards = vector - points
-        unit: Array = (towards / np.linalg.norm(towards, axis=-1, keepdims=True)).astype(np.float32)
+        with np.errstate(invalid="ignore"):  # at the light itself: NaN
+            unit: Array = (towards / np.linalg.norm(towards, axis=-1, keepdims=True)).astype(np.float32)
         return unit
