@@ -138,9 +138,17 @@ Observer: TypeAlias = Callable[[Event], None]
 def _summary(value: Any) -> str:
     import numpy as np
 
+    if isinstance(value, tuple):
+        return f"{len(value)} × {_summary(value[0])}" if value else "0 values"
     value = getattr(value, "value", value)
     if not isinstance(value, np.ndarray):
-        return type(value).__name__
+        return f"{value:g}" if type(value) in (int, float) else _named(value)
     text = f"{value.dtype} {value.shape}"
-    finite = value[np.isfinite(value)] if np.issubdtype(value.dtype, np.floating) else value
+    if value.dtype.kind == "b":
+        return f"{text} {np.count_nonzero(value)} set"
+    finite = value[np.isfinite(value)]
     return f"{text} {finite.min():.4g}..{finite.max():.4g}" if finite.size else f"{text} nothing known"
+
+
+def _named(value: object) -> str:
+    return "none" if value is None else str(value) if isinstance(value, bool) else type(value).__name__
