@@ -22,11 +22,11 @@ QUADRIC, BOX, TORUS, HEIGHTS, MESH = 0, 1, 2, 3, 4
 FAR = 1e30
 
 
-@njit
-def meet_quadric(thing, ox, oy, oz, dx, dy, dz, near):
+@njit(error_model="numpy")
+def meet_quadric(things, i, ox, oy, oz, dx, dy, dz, near):
     """Solid {a x² + b y² + c z² + d z + e ≤ 0, low ≤ z ≤ high}; without caps only its mantle."""
-    a, b, c, d, e = thing[14], thing[15], thing[16], thing[17], thing[18]
-    low, high, caps = thing[19], thing[20], thing[21]
+    a, b, c, d, e = things[i, 14], things[i, 15], things[i, 16], things[i, 17], things[i, 18]
+    low, high, caps = things[i, 19], things[i, 20], things[i, 21]
     best, face = FAR, 0
     qa = a * dx * dx + b * dy * dy + c * dz * dz
     qb = a * ox * dx + b * oy * dy + c * oz * dz + 0.5 * d * dz
@@ -50,14 +50,14 @@ def meet_quadric(thing, ox, oy, oz, dx, dy, dz, near):
     return best, face
 
 
-@njit
-def meet_box(thing, ox, oy, oz, dx, dy, dz, near):
-    """Faces 0..5: −x, +x, −y, +y, −z, +z of the box of half sides thing[14:17]."""
+@njit(error_model="numpy")
+def meet_box(things, i, ox, oy, oz, dx, dy, dz, near):
+    """Faces 0..5: −x, +x, −y, +y, −z, +z of the box of half sides things[i, 14:17]."""
     enter, leave, into, out = -FAR, FAR, 0, 0
     for axis in range(3):
         o = ox if axis == 0 else (oy if axis == 1 else oz)
         d = dx if axis == 0 else (dy if axis == 1 else dz)
-        half = thing[14 + axis]
+        half = things[i, 14 + axis]
         if d == 0.0:
             if abs(o) > half:
                 return FAR, 0
@@ -77,7 +77,7 @@ def meet_box(thing, ox, oy, oz, dx, dy, dz, near):
     return leave, out
 
 
-@njit
+@njit(error_model="numpy")
 def _first_root(c2, c1, c0, low, high):
     """The first t in [low, high] where t⁴ + c2 t² + c1 t + c0 passes from above to below 0, or FAR."""
     p, q = c2 / 2.0, c1 / 4.0  # t³ + p t + q = 0 where the slope vanishes
@@ -126,10 +126,10 @@ def _first_root(c2, c1, c0, low, high):
     return FAR
 
 
-@njit
-def meet_torus(thing, ox, oy, oz, dx, dy, dz, near):
+@njit(error_model="numpy")
+def meet_torus(things, i, ox, oy, oz, dx, dy, dz, near):
     """Torus about z: (|p|² + R² − r²)² = 4R²(x² + y²), as a quartic about the point nearest its centre."""
-    big, small = thing[14], thing[15]
+    big, small = things[i, 14], things[i, 15]
     mid = -(ox * dx + oy * dy + oz * dz)
     px, py, pz = ox + mid * dx, oy + mid * dy, oz + mid * dz
     m = px * px + py * py + pz * pz
@@ -146,7 +146,7 @@ def meet_torus(thing, ox, oy, oz, dx, dy, dz, near):
     return (t + mid if t < FAR else FAR), 0
 
 
-@njit
+@njit(error_model="numpy")
 def spline(heights, start, columns, gx, gy, kx, ky):
     """Cubic B-spline surface and its slopes (per cell) in cell (kx, ky) at grid position (gx, gy)."""
     s, t = gx - kx, gy - ky
@@ -167,17 +167,17 @@ def spline(heights, start, columns, gx, gy, kx, ky):
     return z, zx, zy
 
 
-@njit
-def meet_heights(thing, heights, ox, oy, oz, dx, dy, dz, near):
+@njit(error_model="numpy")
+def meet_heights(things, i, heights, ox, oy, oz, dx, dy, dz, near):
     """Surface z = S(x, y) over a grid: walk from cell to cell, look for a change of side in each."""
-    start, rows, columns, pitch = int(thing[14]), int(thing[15]), int(thing[16]), thing[17]
+    start, rows, columns, pitch = int(things[i, 14]), int(things[i, 15]), int(things[i, 16]), things[i, 17]
     gx, gy, ex, ey = ox / pitch + (columns - 1) / 2, oy / pitch + (rows - 1) / 2, dx / pitch, dy / pitch
     enter, leave = near, FAR
     for axis in range(3):
         o = gx if axis == 0 else (gy if axis == 1 else oz)
         d = ex if axis == 0 else (ey if axis == 1 else dz)
-        low = thing[18] if axis == 2 else 1.0
-        high = thing[19] if axis == 2 else (columns - 2.0 if axis == 0 else rows - 2.0)
+        low = things[i, 18] if axis == 2 else 1.0
+        high = things[i, 19] if axis == 2 else (columns - 2.0 if axis == 0 else rows - 2.0)
         if d == 0.0:
             if o < low or o > high:
                 return FAR, 0
@@ -226,12 +226,12 @@ def meet_heights(thing, heights, ox, oy, oz, dx, dy, dz, near):
     return FAR, 0
 
 
-@njit
-def meet_mesh(thing, bounds, links, triangles, ox, oy, oz, dx, dy, dz, near, far):
+@njit(error_model="numpy")
+def meet_mesh(root, bounds, links, triangles, ox, oy, oz, dx, dy, dz, near, far):
     """Nearest triangle (Möller and Trumbore) in a tree of boxes; the face is the triangle's index."""
     best, face = far, -1
     stack = np.empty(64, np.int64)
-    stack[0] = int(thing[14])
+    stack[0] = root
     top = 1
     ix = 1.0 / dx if dx != 0.0 else FAR
     iy = 1.0 / dy if dy != 0.0 else FAR
@@ -271,36 +271,47 @@ def meet_mesh(thing, bounds, links, triangles, ox, oy, oz, dx, dy, dz, near, far
     return (best if face >= 0 else FAR), face
 
 
-@njit
+@njit(error_model="numpy", forceinline=True)
 def nearest(scene, ox, oy, oz, dx, dy, dz, near, far, anything):
     """(distance, thing, face) of the nearest surface between near and far; of any if ``anything``."""
+    things = scene.things
     best, which, where = far, -1, 0
-    for i in range(scene.things.shape[0]):
-        thing = scene.things[i]
-        x, y, z = ox - thing[9], oy - thing[10], oz - thing[11]
-        radius = thing[13]
+    for i in range(things.shape[0]):
+        x, y, z = ox - things[i, 9], oy - things[i, 10], oz - things[i, 11]
+        radius = things[i, 13]
         if radius > 0.0:
             along = x * dx + y * dy + z * dz
             if x * x + y * y + z * z - along * along > radius * radius:
                 continue
-        px = thing[0] * x + thing[1] * y + thing[2] * z
-        py = thing[3] * x + thing[4] * y + thing[5] * z
-        pz = thing[6] * x + thing[7] * y + thing[8] * z
-        qx = thing[0] * dx + thing[1] * dy + thing[2] * dz
-        qy = thing[3] * dx + thing[4] * dy + thing[5] * dz
-        qz = thing[6] * dx + thing[7] * dy + thing[8] * dz
+        px = things[i, 0] * x + things[i, 1] * y + things[i, 2] * z
+        py = things[i, 3] * x + things[i, 4] * y + things[i, 5] * z
+        pz = things[i, 6] * x + things[i, 7] * y + things[i, 8] * z
+        qx = things[i, 0] * dx + things[i, 1] * dy + things[i, 2] * dz
+        qy = things[i, 3] * dx + things[i, 4] * dy + things[i, 5] * dz
+        qz = things[i, 6] * dx + things[i, 7] * dy + things[i, 8] * dz
         kind = scene.kinds[i, 0]
         if kind == QUADRIC:
-            t, face = meet_quadric(thing, px, py, pz, qx, qy, qz, near)
+            t, face = meet_quadric(things, i, px, py, pz, qx, qy, qz, near)
         elif kind == BOX:
-            t, face = meet_box(thing, px, py, pz, qx, qy, qz, near)
+            t, face = meet_box(things, i, px, py, pz, qx, qy, qz, near)
         elif kind == TORUS:
-            t, face = meet_torus(thing, px, py, pz, qx, qy, qz, near)
+            t, face = meet_torus(things, i, px, py, pz, qx, qy, qz, near)
         elif kind == HEIGHTS:
-            t, face = meet_heights(thing, scene.heights, px, py, pz, qx, qy, qz, near)
+            t, face = meet_heights(things, i, scene.heights, px, py, pz, qx, qy, qz, near)
         else:
             t, face = meet_mesh(
-                thing, scene.bounds, scene.links, scene.triangles, px, py, pz, qx, qy, qz, near, best
+                int(things[i, 14]),
+                scene.bounds,
+                scene.links,
+                scene.triangles,
+                px,
+                py,
+                pz,
+                qx,
+                qy,
+                qz,
+                near,
+                best,
             )
         if t < best:
             best, which, where = t, i, face

@@ -21,17 +21,16 @@ DEPTH, NX, NY, NZ, THING, FACE, MARK, LIT, ALBEDO, BRIGHTNESS, SEEN = 0, 1, 2, 3
 COLUMNS = 11
 
 
-@njit
+@njit(error_model="numpy")
 def _grid_noise(ix, iy, iz, seed):
     """A hash of a grid point, in [0, 1)."""
     h = (ix * 374761393 + iy * 668265263 + iz * 1440662683 + seed * 1274126177) & 0xFFFFFFFF
-    h = ((h ^ (h >> 13)) * 1103515245) & 0xFFFFFFFF
-    h = ((h ^ (h >> 16)) * 2246822519) & 0xFFFFFFFF
-    h ^= h >> 15
-    return h / 4294967296.0
+    h = ((h ^ (h >> 13)) * 2246822519) & 0xFFFFFFFF
+    h = ((h ^ (h >> 16)) * 1103515245) & 0xFFFFFFFF
+    return (h ^ (h >> 15)) * 2.3283064365386963e-10
 
 
-@njit
+@njit(error_model="numpy")
 def _noise(x, y, z, seed, octaves):
     """Value noise summed over octaves, each half as large and half as strong-per-root: in about [0, 1]."""
     total = weight = 0.0
@@ -44,10 +43,11 @@ def _noise(x, y, z, seed, octaves):
         v = v * v * (3 - 2 * v)
         w = w * w * (3 - 2 * w)
         value = 0.0
-        for k in range(8):
-            a, b, c = k & 1, (k >> 1) & 1, k >> 2
-            share = (u if a else 1 - u) * (v if b else 1 - v) * (w if c else 1 - w)
-            value += share * _grid_noise(ix + a, iy + b, iz + c, seed + octave)
+        for c in range(2):
+            for b in range(2):
+                left = _grid_noise(ix, iy + b, iz + c, seed + octave)
+                line = left + u * (_grid_noise(ix + 1, iy + b, iz + c, seed + octave) - left)
+                value += line * (v if b else 1 - v) * (w if c else 1 - w)
         total += strength * (value - 0.5)
         weight += strength * strength
         strength *= 0.75
@@ -56,7 +56,7 @@ def _noise(x, y, z, seed, octaves):
     return min(max(value, 0.0), 1.0)
 
 
-@njit
+@njit(error_model="numpy")
 def _picture(scene, index, x, y):
     """A texture image at (x, y) in its pixels: bilinear, mirrored beyond its sides."""
     start, rows, columns = scene.pictures[index, 0], scene.pictures[index, 1], scene.pictures[index, 2]
@@ -72,7 +72,7 @@ def _picture(scene, index, x, y):
     return top * (1 - v) + low * v
 
 
-@njit
+@njit(error_model="numpy")
 def _albedo(scene, row, x, y, z, u, v):
     """(albedo, mark, row of the leaf): ``mark`` changes where the albedo jumps."""
     mark = 0
@@ -99,7 +99,7 @@ def _albedo(scene, row, x, y, z, u, v):
     return a + (b - a) * share, mark, row
 
 
-@njit
+@njit(error_model="numpy")
 def _surface(scene, which, face, x, y, z):
     """Outward normal and surface coordinates (u, v), in lengths, at a point of a thing's own frame."""
     thing = scene.things[which]
@@ -155,7 +155,7 @@ def _surface(scene, which, face, x, y, z):
     return nx / length, ny / length, nz / length, u, v
 
 
-@njit
+@njit(error_model="numpy", forceinline=True)
 def _look(scene, lamp, ox, oy, oz, dx, dy, dz):
     """What one ray sees: (distance, normal facing it, thing, face, mark, lit, albedo, brightness)."""
     t, which, face = nearest(scene, ox, oy, oz, dx, dy, dz, 1e-9, FAR, False)
@@ -198,26 +198,31 @@ def _look(scene, lamp, ox, oy, oz, dx, dy, dz):
     return t, nx, ny, nz, which, face, mark, lit, albedo, brightness
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def paint(scene, lamp, eye, aim, samples, image):
     """Fills ``image`` (H, W) with the mean brightness of samples × samples rays a pixel."""
     height, width = image.shape
+    offsets = np.empty((samples * samples, 2))
+    for k in range(samples * samples):
+        offsets[k, 0] = (k % samples + 0.5) / samples - 0.5
+        offsets[k, 1] = (k // samples + 0.5) / samples - 0.5
+    share = 1.0 / (samples * samples)
     for row in range(height):
         for column in range(width):
             total = 0.0
             for k in range(samples * samples):
-                u = column + (k % samples + 0.5) / samples - 0.5
-                v = row + (k // samples + 0.5) / samples - 0.5
+                u = column + offsets[k, 0]
+                v = row + offsets[k, 1]
                 dx = aim[0, 0] * u + aim[0, 1] * v + aim[0, 2]
                 dy = aim[1, 0] * u + aim[1, 1] * v + aim[1, 2]
                 dz = aim[2, 0] * u + aim[2, 1] * v + aim[2, 2]
                 s = 1.0 / math.sqrt(dx * dx + dy * dy + dz * dz)
                 seen = _look(scene, lamp, eye[0], eye[1], eye[2], dx * s, dy * s, dz * s)
                 total += seen[9]
-            image[row, column] = total / (samples * samples)
+            image[row, column] = total * share
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def probe(scene, lamp, eye, aim, other, spots, out):
     """Fills ``out`` (N, COLUMNS) for rays through image points ``spots`` (N, 2), without supersampling.
 
