@@ -57,6 +57,8 @@ def read_only(array: Array) -> Array:
 class ArraySpec:
     """What an array on a port is: kind, dtype, named dims and unit.
 
+    Raises TypeError for a dtype that is neither numbers nor booleans.
+
     Parameters
     ----------
     kind
@@ -78,6 +80,8 @@ class ArraySpec:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "_dtype", np.dtype(self.dtype))
+        if self._dtype.kind not in "biufc":
+            raise TypeError(f"{self.kind} is of {self.dtype}; arrays on ports hold numbers or booleans")
         fixed = tuple((i, d) for i, d in enumerate(self.dims) if isinstance(d, int))
         object.__setattr__(self, "_fixed", fixed)
 
@@ -92,13 +96,21 @@ class ArraySpec:
         ValueError
             If it is no array, or of another dtype or shape; says both what was found and wanted.
         """
-        if not isinstance(value, np.ndarray):
-            raise ValueError(f"wants {self}; this is a {type(value).__name__}, not a numpy array")
+        if type(value) is not np.ndarray:
+            value = self._plain(value)
         if value.dtype != self._dtype:
             raise ValueError(f"wants {self}; this array is {value.dtype}")
         if value.ndim != len(self.dims) or any(value.shape[i] != n for i, n in self._fixed):
             raise ValueError(f"wants {self}; this array has shape {value.shape}")
         return read_only(value)
+
+    def _plain(self, value: object) -> Array:
+        """A subclass as a plain array: memory maps and matrices may come in, a mask would be lost."""
+        if not isinstance(value, np.ndarray):
+            raise ValueError(f"wants {self}; this is a {type(value).__name__}, not a numpy array")
+        if isinstance(value, np.ma.MaskedArray):
+            raise ValueError(f"wants {self}; this is a masked array; write array.filled(np.nan)")
+        return value.view(np.ndarray)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
         return core_schema.no_info_plain_validator_function(self.check)
@@ -137,6 +149,8 @@ class ArrayKind:
         spec = ArraySpec(self.spec.kind, self.spec.dtype, _dims(dims), self.spec.unit)
         if len(spec.dims) != len(self.spec.dims):
             raise TypeError(f"{spec.kind} has {len(self.spec.dims)} axes, as in {self.spec}; got {dims!r}")
+        if any(spec.dims[i] != n for i, n in self.spec._fixed):
+            raise TypeError(f"{spec.kind} has the lengths of {self.spec}; got {dims!r}")
         return Annotated[array, spec]
 
     def __repr__(self) -> str:
