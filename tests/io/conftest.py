@@ -129,7 +129,15 @@ def jpeg(samples, *flags):
 @pytest.fixture(scope="session")
 def make():
     return SimpleNamespace(
-        png=png, unpng=unpng, chunk=chunk, pfm=pfm, unpfm=unpfm, npy=npy, stored=stored, zipped=zipped, jpeg=jpeg
+        png=png,
+        unpng=unpng,
+        chunk=chunk,
+        pfm=pfm,
+        unpfm=unpfm,
+        npy=npy,
+        stored=stored,
+        zipped=zipped,
+        jpeg=jpeg,
     )
 
 

@@ -131,7 +131,9 @@ def test_another_sort_of_file_is_refused_in_one_line(put, text):
         visint.io.read_camera(put(text))
 
 
-@pytest.mark.parametrize("data", [b"", b"\xff\xfe\0", b"cam0=\0", b"x" * 100_000], ids=["empty", "utf16", "nul", "long"])
+@pytest.mark.parametrize(
+    "data", [b"", b"\xff\xfe\0", b"cam0=\0", b"x" * 100_000], ids=["empty", "utf16", "nul", "long"]
+)
 def test_files_that_are_no_text_are_refused(put, data):
     """By the checks of every text file."""
     with pytest.raises(InputError, match="VI30[23]"):

@@ -141,7 +141,9 @@ def test_what_is_no_text_is_named_with_its_line(put, data, line):
 
 
 @pytest.mark.parametrize(
-    "text", ["{", '{"a": }', "[" * 100_000, "nope", "[" + "1" * 10_000 + "]"], ids=["open", "value", "deep", "word", "long"]
+    "text",
+    ["{", '{"a": }', "[" * 100_000, "nope", "[" + "1" * 10_000 + "]"],
+    ids=["open", "value", "deep", "word", "long"],
 )
 def test_what_is_no_json_is_refused(put, text):
     """Broken, too deep or too long a number: one line each."""

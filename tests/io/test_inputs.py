@@ -28,7 +28,9 @@ def test_the_curve_of_8_bit_files_is_undone(make, put):
     assert read.max() == 1
 
 
-@pytest.mark.parametrize(("gamma", "wanted"), [(None, srgb(128 / 255)), (1, 128 / 255), (2.2, (128 / 255) ** 2.2)])
+@pytest.mark.parametrize(
+    ("gamma", "wanted"), [(None, srgb(128 / 255)), (1, 128 / 255), (2.2, (128 / 255) ** 2.2)]
+)
 def test_gamma_of_8_bits(make, put, gamma, wanted):
     """None undoes sRGB, 1 does nothing, another number is a power."""
     read = visint.io.read(put(make.png(np.array([[128]], np.uint8))), "Image", gamma=gamma)
@@ -164,7 +166,10 @@ def test_three_valued_masks_are_refused(make, put):
         visint.io.read(put(make.png(np.array([[0, 128, 255]], np.uint8))), "Mask")
 
 
-@pytest.mark.parametrize(("samples", "wanted"), [([[0, 1]], [[False, True]]), ([[7, 7]], [[True, True]]), ([[0, 0]], [[False, False]])])
+@pytest.mark.parametrize(
+    ("samples", "wanted"),
+    [([[0, 1]], [[False, True]]), ([[7, 7]], [[True, True]]), ([[0, 0]], [[False, False]])],
+)
 def test_two_valued_masks_are_what_is_not_zero(make, put, samples, wanted):
     """0 and 1, 0 and 255, or one value alone."""
     assert visint.io.read(put(make.png(np.array(samples, np.uint8))), "Mask").tolist() == wanted

@@ -42,7 +42,9 @@ def failing(number):
 
 
 @pytest.mark.parametrize("step", ["pathlib.Path.open", "os.fsync", "pathlib.Path.replace"])
-@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EACCES, errno.EROFS, errno.EFBIG])
+@pytest.mark.parametrize(
+    "number", [errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EACCES, errno.EROFS, errno.EFBIG]
+)
 def test_every_step_may_fail(tmp_path, monkeypatch, step, number):
     """Opening, flushing, renaming: the former file stays, no part of the new one is left."""
     path = tmp_path / "depth.pfm"
@@ -73,7 +75,9 @@ def test_a_full_disk_says_how_much_is_missing(tmp_path, monkeypatch):
     usage = namedtuple("usage", "total used free")(10, 8, 2)
     monkeypatch.setattr(shutil, "disk_usage", lambda path: usage)
     monkeypatch.setattr(os, "fsync", failing(errno.ENOSPC))
-    with pytest.raises(OutputError, match="the disk is full: 5000 bytes wanted, 2 bytes free, 4998 bytes missing"):
+    with pytest.raises(
+        OutputError, match="the disk is full: 5000 bytes wanted, 2 bytes free, 4998 bytes missing"
+    ):
         visint.io.write_bytes(tmp_path / "a", bytes(5000))
 
 
@@ -110,7 +114,9 @@ try:
 except OutputError as error:
     print(error.problems[0].found)
 """
-    run = subprocess.run([sys.executable, "-c", program, tmp_path / "a"], capture_output=True, text=True, check=True)
+    run = subprocess.run(
+        [sys.executable, "-c", program, tmp_path / "a"], capture_output=True, text=True, check=True
+    )
     assert "larger than this process or disk may write" in run.stdout
     assert os.listdir(tmp_path) == []
     assert resource.getrlimit(resource.RLIMIT_FSIZE)[0] != 1000

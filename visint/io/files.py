@@ -55,14 +55,14 @@ def read_bytes(path: str | Path, *, most: int = LIMITS.most_bytes) -> bytes:
         VI301 if it is missing, a folder or unreadable; VI302 if it is empty; VI303 if it is too large.
     """
     try:
-        data = _read(path, most)
+        if _refuse_odd(path) > most:  # by its size alone: nothing is read, nothing allocated
+            found = f"is larger than the {most / (1 << 20):.4g} MB that are read of such a file"
+            raise InputError.of("VI303", found, where=shown(path))
+        data = Path(path).read_bytes()
     except (OSError, ValueError) as error:
         raise _missing(path, error) from None
     if not data:
         raise InputError.of("VI302", "is empty", where=shown(path))
-    if len(data) > most:
-        found = f"is larger than the {most / (1 << 20):.4g} MB that are read of such a file"
-        raise InputError.of("VI303", found, where=shown(path))
     return data
 
 
@@ -89,12 +89,6 @@ def files_in(folder: str | Path, *suffixes: str) -> tuple[Path, ...]:
     except (OSError, ValueError) as error:
         raise _missing(folder, error) from None
     return tuple(file for file in found if file.is_file() and (not suffixes or file.suffix in suffixes))
-
-
-def _read(path: str | Path, most: int) -> bytes:
-    size = _refuse_odd(path)
-    with Path(path).open("rb") as file:
-        return file.read(most + 1) if size <= most else bytes(most + 1)
 
 
 def _refuse_odd(path: str | Path) -> int:

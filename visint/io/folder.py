@@ -129,10 +129,11 @@ class OutputFolder:
             raise OutputError.of("VI601", found, where=shown(self.path)) from None
 
     def _check(self) -> None:
-        if not self.path.exists():
+        nearest = next(place for place in (self.path, *self.path.parents) if place.exists())
+        if not nearest.is_dir():
+            raise OutputError.of("VI602", "is a file; wants a folder", where=shown(nearest))
+        if nearest != self.path:
             return
-        if not self.path.is_dir():
-            raise OutputError.of("VI602", "is a file; wants a folder", where=shown(self.path))
         others = [entry for entry in self.path.iterdir() if not entry.name.startswith(_HIDDEN)]
         if others and not self.force and not is_run(self.path):
             raise OutputError.of(

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from visint.arrays import SPECS, Array, ArraySpec
+from visint.errors import InputError
 from visint.io.calibration import read_camera
 from visint.io.curves import check_gamma
 from visint.io.files import Note, read_bytes, shown, silent
@@ -95,7 +96,23 @@ def read(
     name = shown(path)
     spec = kind if isinstance(kind, ArraySpec) else _spec(kind, name)
     check_gamma(gamma)
-    data = read_bytes(path, most=limits.most_bytes)
+    try:
+        return _array(read_bytes(path, most=limits.most_bytes), spec, _Manner(name, gamma, note, limits))
+    except MemoryError:
+        raise InputError.of("VI303", "needs more memory than there is", where=name) from None
+
+
+class _Manner(NamedTuple):
+    """How one file is read, and what it is called."""
+
+    name: str
+    gamma: float | None
+    note: Note
+    limits: Limits
+
+
+def _array(data: bytes, spec: ArraySpec, manner: _Manner) -> Array:
+    name, gamma, note, limits = manner
     format_ = format_of(data, name)
     takes = _TAKES.get(spec.kind, STORED)
     if format_ not in takes:

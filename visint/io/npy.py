@@ -14,7 +14,7 @@ from visint.arrays import Array, read_only
 from visint.io.limits import Limits
 from visint.io.refusals import broken, inexact
 
-__all__ = ["encode_npy", "npy_array"]
+__all__ = ["encode_npy", "npy_array", "npy_header"]
 
 _PLAIN = "biufc"
 _HEADER_BYTES = 16_384
@@ -30,18 +30,29 @@ def npy_array(data: bytes, name: str, limits: Limits) -> Array:
         VI302 if it is damaged, holds objects or records, or more or fewer bytes than its header claims;
         VI303 if it is too large.
     """
-    shape, fortran, dtype, start = _header(data, name)
-    size = math.prod(shape) * dtype.itemsize
-    limits.check_size(name, size)
-    if len(data) - start != size:
-        found = f"holds {len(data) - start} bytes of values where its npy header claims {size}"
-        raise broken(name, found)
-    flat = np.frombuffer(data, dtype, math.prod(shape), start) if size else np.empty(0, dtype)
+    shape, fortran, dtype, start = npy_header(data[:_HEADER_BYTES], len(data), name, limits)
+    count = math.prod(shape)
+    flat = np.frombuffer(data, dtype, count, start) if count else np.empty(0, dtype)
     return read_only(flat.reshape(shape, order="F" if fortran else "C").astype(dtype.newbyteorder("=")))
 
 
-def _header(data: bytes, name: str) -> tuple[tuple[int, ...], bool, np.dtype[Any], int]:
-    stream = io.BytesIO(data[:_HEADER_BYTES])
+def npy_header(
+    head: bytes, held: int, name: str, limits: Limits
+) -> tuple[tuple[int, ...], bool, np.dtype[Any], int]:
+    """Shape, Fortran order, dtype and where the values begin, from a file's first 16 KB.
+
+    ``held`` is how many bytes the file has in all; raises as :func:`npy_array`.
+    """
+    shape, fortran, dtype, start = _header(head, name)
+    size = math.prod(shape) * dtype.itemsize
+    limits.check_size(name, size)
+    if held - start != size:
+        raise broken(name, f"holds {held - start} bytes of values where its npy header claims {size}")
+    return shape, fortran, dtype, start
+
+
+def _header(head: bytes, name: str) -> tuple[tuple[int, ...], bool, np.dtype[Any], int]:
+    stream = io.BytesIO(head)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

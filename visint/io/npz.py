@@ -13,13 +13,14 @@ from visint.errors import InputError
 from visint.io.files import read_bytes, shown
 from visint.io.formats import Format, format_of
 from visint.io.limits import LIMITS, Limits
-from visint.io.npy import encode_npy, npy_array
+from visint.io.npy import encode_npy, npy_array, npy_header
 from visint.io.refusals import broken, unfit
 
 __all__ = ["encode_npz", "npz_array", "read_npz"]
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 _MOST_ENTRIES = 4096
+_HEAD = 16_384
 _ZIP_FAULTS = (zipfile.BadZipFile, zlib.error, EOFError, OSError, ValueError, RuntimeError, KeyError)
 
 
@@ -71,6 +72,8 @@ def _keys(archive: zipfile.ZipFile) -> dict[str, zipfile.ZipInfo]:
 def _member(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, name: str, limits: Limits) -> Array:
     place = f"{name}[{shown(entry.filename)}]"
     try:
+        with archive.open(entry) as stream:
+            npy_header(stream.read(_HEAD), entry.file_size, place, limits)
         with archive.open(entry) as stream:  # yields no more than the size that was checked
             data = stream.read(entry.file_size)
             stream.read(1)  # at the end the checksum is held against the data
