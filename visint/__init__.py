@@ -9,7 +9,8 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from visint.engine import run as run
+    from visint.engine.options import Options as Options
+    from visint.engine.run import run as run
     from visint.errors import Cancelled as Cancelled
     from visint.errors import GraphError as GraphError
     from visint.errors import InputError as InputError
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from visint.fields.light import Light as Light
     from visint.graph import Builder as Builder
     from visint.graph import Graph as Graph
-    from visint.graph import load as load
+    from visint.graph.load import load as load
     from visint.hookspecs import hookimpl as hookimpl
     from visint.module import CONTRACT as CONTRACT
     from visint.module import Context as Context
@@ -49,6 +50,7 @@ _HOME = {
     "Light": "fields.light",
     "Module": "module",
     "ModuleError": "errors",
+    "Options": "engine",
     "OutputError": "errors",
     "Params": "module",
     "PluginError": "errors",

@@ -183,14 +183,14 @@ class Context:
         (rows, columns) of the images at this level; None in a graph without images.
     """
 
-    __slots__ = ("_cancelled", "_note", "_per_turn", "_seed", "_turn", "level", "size")
+    __slots__ = ("_cancelled", "_note", "_per_turn", "_seed", "_turns", "level", "size")
 
     def __init__(  # noqa: PLR0913 - keyword-only facts about a call, built by the engine and by tests
         self,
         *,
         level: int = 0,
         size: tuple[int, int] | None = None,
-        turn: int = 0,
+        turns: tuple[int, ...] = (),
         seed: tuple[int, ...] = (0,),
         per_turn: bool = True,
         note: Callable[[str, str, Any], None] | None = None,
@@ -198,7 +198,7 @@ class Context:
     ) -> None:
         self.level = level
         self.size = size
-        self._turn = turn
+        self._turns = turns
         self._seed = seed
         self._per_turn = per_turn
         self._note = note
@@ -213,7 +213,7 @@ class Context:
     def turn(self) -> int:
         """The turn of the innermost loop, from 0. Only a module with ``per_turn = True`` may ask."""
         self._needs_per_turn("ctx.turn")
-        return self._turn
+        return self._turns[-1] if self._turns else 0
 
     @property
     def rng(self) -> np.random.Generator:
@@ -222,7 +222,7 @@ class Context:
         New at every call of ``run``: equal runs give equal numbers. Only with ``per_turn = True``.
         """
         self._needs_per_turn("ctx.rng")
-        return np.random.default_rng((*self._seed, self.level, self._turn))
+        return np.random.default_rng((*self._seed, self.level, *self._turns))
 
     def _needs_per_turn(self, what: str) -> None:
         if not self._per_turn:

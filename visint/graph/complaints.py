@@ -27,7 +27,7 @@ Finder = Callable[..., Where]
 
 def keys_of(model: type[BaseModel]) -> list[str]:
     """The keys a model takes, as written in a file."""
-    return [info.alias or name for name, info in model.model_fields.items()]
+    return [str(info.validation_alias or name) for name, info in model.model_fields.items()]
 
 
 def complaints(error: ValidationError, data: Any, where: Finder) -> list[Problem]:

@@ -1,4 +1,4 @@
-"""The bound graph: every name looked up, every port joined, every rule checked; frozen, and free of run state."""
+"""The bound graph: every name looked up, every port joined, every rule checked; free of run state."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ class Loop:
 
 @dataclass(frozen=True, slots=True)
 class Graph:
-    """A graph that can run. Made by :func:`visint.load` or :class:`visint.Builder`; equal specs are equal graphs.
+    """A graph that can run, made by :func:`visint.load` or :class:`visint.Builder`; equal by its spec.
 
     Attributes
     ----------

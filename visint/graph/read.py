@@ -69,7 +69,7 @@ def read_graph(path: Path) -> Source:
         VI101 to VI107, with file, line and column; all problems of the phase together.
     """
     try:
-        text = io.read_text(path, LARGEST)
+        text = io.read_text(path, most=LARGEST)
     except InputError as error:
         raise GraphError(
             Problem("VI101", problem.found, Where(str(path))) for problem in error.problems
@@ -104,11 +104,11 @@ def _kind(data: Any) -> str:
 
 _INT = re.compile(r"[-+]?[0-9]{1,18}\Z")
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?\Z")
-_WORDS = {"": None, "~": None, "null": None, "Null": None, "NULL": None} | {
-    word: value
-    for value, words in ((True, "true True TRUE"), (False, "false False FALSE"))
-    for word in words.split()
-}
+_WORDS = (
+    dict.fromkeys(("", "~", "null", "Null", "NULL"))
+    | dict.fromkeys(("true", "True", "TRUE"), True)
+    | dict.fromkeys(("false", "False", "FALSE"), False)
+)
 
 
 def _scalar(text: str) -> Any:

@@ -67,7 +67,7 @@ class LoopSpec(_Part):
 class FeedbackSpec(_Part):
     """A port fed by the turn before: ``from`` where, what to ``start`` with, and when to ``restart``."""
 
-    from_: Ref = Field(alias="from")
+    from_: Ref = Field(validation_alias="from", serialization_alias="from")
     start: Annotated[Start, BeforeValidator(_none)] = None
     restart: str | None = None
 
@@ -76,11 +76,11 @@ class NodeSpec(_Part):
     """A node: the module it ``uses``, its parameters, its loop and where each port comes from."""
 
     uses: str
-    with_: dict[str, Any] = Field(default={}, alias="with")
+    with_: dict[str, Any] = Field(default={}, validation_alias="with", serialization_alias="with")
     loop: str | None = None
     levels: tuple[int, ...] | None = None
     at: dict[int, dict[str, Any]] = {}
-    in_: dict[str, Ref | tuple[Ref, ...]] = Field(default={}, alias="in")
+    in_: dict[str, Ref | tuple[Ref, ...]] = Field(default={}, validation_alias="in", serialization_alias="in")
     feedback: dict[str, FeedbackSpec] = {}
     of: str | None = None
 
@@ -89,18 +89,18 @@ class StepSpec(_Part):
     """What a hub does with evidence: the module, or the built-in ``none`` or ``replace``."""
 
     uses: str | None = None
-    with_: dict[str, Any] = Field(default={}, alias="with")
-    in_: dict[str, Ref | tuple[Ref, ...]] = Field(default={}, alias="in")
+    with_: dict[str, Any] = Field(default={}, validation_alias="with", serialization_alias="with")
+    in_: dict[str, Ref | tuple[Ref, ...]] = Field(default={}, validation_alias="in", serialization_alias="in")
 
 
 class SpokeSpec(_Part):
     """A spoke: a node that only estimates, and how its evidence is validated and enters the map."""
 
     uses: str
-    with_: dict[str, Any] = Field(default={}, alias="with")
+    with_: dict[str, Any] = Field(default={}, validation_alias="with", serialization_alias="with")
     levels: tuple[int, ...] | None = None
     at: dict[int, dict[str, Any]] = {}
-    in_: dict[str, Ref | tuple[Ref, ...]] = Field(default={}, alias="in")
+    in_: dict[str, Ref | tuple[Ref, ...]] = Field(default={}, validation_alias="in", serialization_alias="in")
     feedback: dict[str, FeedbackSpec] = {}
     cohere: StepSpec = StepSpec()
     reconcile: StepSpec = StepSpec()

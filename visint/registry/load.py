@@ -78,7 +78,7 @@ def load_plugin(name: str, origin: str, target: object) -> Plugin:
         return Plugin(
             name,
             origin,
-            _by_name((each for given in hook.visint_modules() for each in given)),
+            _by_name(each for given in hook.visint_modules() for each in given),
             {kind.name: _own_kind(name, kind) for given in hook.visint_fields() for kind in given},
             {policy: steps for given in hook.visint_policies() for policy, steps in given.items()},
             {kind: writer for given in hook.visint_writers() for kind, writer in given.items()},

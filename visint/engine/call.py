@@ -1,0 +1,211 @@
+"""One node at work: its ports filled from slots, its module called, its outputs checked and put into slots."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from time import perf_counter
+from typing import Any
+
+from pydantic import ValidationError
+
+from visint import io
+from visint.arrays import read_only
+from visint.engine.commit import map_call
+from visint.engine.frame import Frame
+from visint.engine.state import State
+from visint.errors import Cancelled, ModuleError, Problem, VisintError, Where
+from visint.events import NodeFailed, NodeFinished, NodeStarted
+from visint.graph.graph import Node, Reader
+from visint.module import Context, Params, Ports
+from visint.registry.load import AnyModule
+from visint.schedule import Step
+from visint.schedule.order import per_turn
+
+__all__ = ["Call"]
+
+Values = dict[str, Any]
+Invoke = Callable[[Values, Context], Any]
+SubGraph = Callable[[Node, Values, Context, State], Mapping[str, Any]]
+
+
+def _value(evidence: Any) -> Any:
+    return evidence.value
+
+
+def _luminance(color: Any) -> Any:
+    return read_only(io.luminance(color))
+
+
+_READERS: Mapping[Reader, Callable[[Any], Any]] = {"value": _value, "luminance": _luminance}
+
+
+def read_as(value: Any, reader: Reader) -> Any:
+    """``value`` as an edge reads it; lists member by member, None as None."""
+    if value is None or reader == "plain":
+        return value
+    if isinstance(value, tuple):
+        return tuple(read_as(one, reader) for one in value)
+    return _READERS[reader](value)
+
+
+class Call:
+    """A step made ready to run: everything that does not change from call to call is worked out once."""
+
+    __slots__ = ("_defaults", "_invoke", "_levels", "_lists", "_outs", "_per_turn", "_seed", "_singles", "node")
+
+    def __init__(self, step: Step, seed: int, sub_graph: SubGraph, state: State) -> None:
+        self.node = step.node
+        self._singles = tuple((port, slot) for port, slot in step.ins if isinstance(slot, int))
+        self._lists = tuple((port, slot) for port, slot in step.ins if not isinstance(slot, int))
+        self._outs = step.outs
+        self._levels = None if step.node.levels is None else frozenset(step.node.levels)
+        self._per_turn = step.node.callee.module is None or per_turn(step.node)
+        self._seed = (seed, step.key)
+        self._defaults = _defaults(step.node)
+        self._invoke = _by_level(step.node, sub_graph, state)
+
+    def __call__(self, state: State, frame: Frame) -> None:
+        """Runs the node once.
+
+        Raises
+        ------
+        ModuleError
+            Naming node, module, version, level and turn.
+        Cancelled
+            If the run was interrupted.
+        """
+        slots = state.slots
+        if self._levels is not None and frame.level not in self._levels:
+            for slot, _, _ in self._outs:
+                slots[slot] = None
+            return
+        if state.cancel.is_set():
+            state.check()
+        values = self._defaults.copy()
+        for port, source in self._singles:
+            values[port] = slots[source]
+        for port, sources in self._lists:
+            values[port] = tuple([one for slot in sources if (one := slots[slot]) is not None])
+        outputs = self._timed(state, frame, values)
+        for slot, port, reader in self._outs:
+            value = outputs[port]
+            slots[slot] = value if reader == "plain" else read_as(value, reader)
+
+    def _timed(self, state: State, frame: Frame, values: Values) -> Any:
+        name, level = self.node.name, frame.level
+        turn = frame.turns[-1] if frame.turns else 0
+        started = perf_counter()
+        if state.emit is not None:
+            state.emit(NodeStarted(name, level, turn, started))
+        try:
+            outputs = self._invoke(values, self._context(state, frame))
+        except BaseException as error:
+            failure = self._failure(error, frame)
+            state.tell(NodeFailed(name, level, turn, str(failure)))
+            raise failure from (None if failure is error else error)
+        seconds = perf_counter() - started
+        total = state.record.seconds[name, level]
+        total[0] += 1
+        total[1] += seconds
+        if state.emit is not None:
+            state.emit(NodeFinished(name, level, turn, started, seconds, outputs))
+        return outputs
+
+    def _context(self, state: State, frame: Frame) -> Context:
+        node = self.node.name
+        return Context(
+            level=frame.level,
+            size=frame.size,
+            turns=frame.turns,
+            seed=self._seed,
+            per_turn=self._per_turn,
+            note=lambda what, name, value: state.note(node, frame, what, name, value),
+            cancelled=state.cancel.is_set,
+        )
+
+    def _failure(self, error: BaseException, frame: Frame) -> BaseException:
+        if isinstance(error, Cancelled | KeyboardInterrupt) or not isinstance(error, Exception | SystemExit):
+            return error
+        callee = self.node.callee
+        place = f"level {frame.level}, turn {frame.turn}"
+        origin = f" of {callee.origin}" if callee.origin else ""
+        module = f"{callee.id} (version {callee.version}{origin})" if callee.version else callee.id
+        where = Where(path=f"node {self.node.name!r}, {module}, {place}")
+        if isinstance(error, VisintError) and not isinstance(error, ModuleError):
+            return type(error)(error.problems)
+        code, found = _said(error)
+        return ModuleError(Problem(code, found, where, fault="plugin"))
+
+
+def _said(error: BaseException) -> tuple[str, str]:
+    """The code of a failure and what is said of it."""
+    if isinstance(error, ModuleError):
+        return error.problems[0].code, "; ".join(problem.found for problem in error.problems)
+    if isinstance(error, ValidationError):
+        items = error.errors(include_input=False, include_url=False)
+        said = "; ".join(f"{'.'.join(map(str, e['loc']))} {e['msg']}".strip() for e in items)
+        return "VI402", f"{error.title}: {said.replace('Value error, ', '')}"
+    text = " ".join(str(error).split()) or "no message"
+    if isinstance(error, ValueError) and "read-only" in text:
+        return "VI403", f"it wrote into one of its inputs ({text}); copy it first"
+    return "VI401", f"{type(error).__name__}: {text[:500]}"
+
+
+def _defaults(node: Node) -> Values:
+    module = node.callee.module
+    if module is None:
+        return dict.fromkeys(node.callee.inputs)
+    fields = module.Inputs.model_fields
+    return {
+        name: None if info.is_required() else info.get_default(call_default_factory=True)
+        for name, info in fields.items()
+    }
+
+
+def _by_level(node: Node, sub_graph: SubGraph, state: State) -> Invoke:
+    if node.callee.graph is not None:
+        return lambda values, context: sub_graph(node, values, context, state)
+    if node.callee.module is None:
+        return map_call(node, state)
+    module = node.callee.module
+    usual = _module_call(module, node.params)
+    if not node.at:
+        return usual
+    at = {level: _module_call(module, params) for level, params in node.at.items()}
+    return lambda values, context: at.get(context.level, usual)(values, context)
+
+
+_set = object.__setattr__
+
+
+def _module_call(module: type[AnyModule], params: Any) -> Invoke:
+    """Calls a module; its inputs are not validated again, since what feeds them was when it was made.
+
+    Only that ports naming the same dim agree is looked at, for that no single output can know.
+    """
+    assert isinstance(params, Params)
+    instance = module(params)
+    inputs_type, outputs_type = module.Inputs, module.Outputs
+    agree, fields, run = inputs_type.dims_agree, set(inputs_type.model_fields), instance.run
+    new = inputs_type.__new__
+
+    def invoke(values: Values, context: Context) -> Mapping[str, Any]:
+        try:
+            agree(values)
+        except ValueError as error:
+            raise ModuleError.of("VI402", f"its inputs do not fit each other: {error}") from None
+        inputs = new(inputs_type)
+        _set(inputs, "__dict__", values)
+        _set(inputs, "__pydantic_fields_set__", fields)
+        _set(inputs, "__pydantic_extra__", None)
+        _set(inputs, "__pydantic_private__", None)
+        outputs = run(inputs, context)
+        if type(outputs) is not outputs_type:
+            raise ModuleError.of("VI402", _no_outputs(outputs, outputs_type))
+        return outputs.__dict__
+
+    return invoke
+
+
+def _no_outputs(outputs: object, wanted: type[Ports]) -> str:
+    return f"run returned {type(outputs).__name__}; it must return {wanted.__name__}"

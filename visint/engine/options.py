@@ -1,0 +1,41 @@
+"""How a run is to be done, apart from what is run on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from threading import Event
+from typing import Any
+
+from visint.events import Observer
+
+__all__ = ["Options"]
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """Options of :func:`visint.run`.
+
+    Parameters
+    ----------
+    seed
+        What random numbers follow from, together with each node's place in the graph.
+    threads
+        1 runs node after node; more lets nodes that do not wait for each other run side by side. The
+        results are the same bits.
+    stop_after
+        The name of a node after which the run ends; loops around it run to their end.
+    start
+        Fields of the map to start from, by name, at full size: a warm start.
+    observers
+        Callables that receive every event.
+    cancel
+        Set it from another thread to interrupt the run.
+    """
+
+    seed: int = 0
+    threads: int = 1
+    stop_after: str | None = None
+    start: Mapping[str, Any] = field(default_factory=dict)
+    observers: tuple[Observer, ...] = ()
+    cancel: Event = field(default_factory=Event)

@@ -1,0 +1,66 @@
+"""The state of one run: values in slots, records, and who listens."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from threading import Event as Flag
+from typing import Any
+
+from visint.engine.frame import Frame
+from visint.errors import Cancelled
+from visint.events import Event, Measured, Observer, Warned
+from visint.results import records
+
+__all__ = ["State"]
+
+
+@dataclass(slots=True)
+class State:
+    """Everything a run changes while it goes on; nothing of it outlives the run but what the result takes.
+
+    ``emit`` is None where nobody listens, so that no event is ever made for nobody.
+    """
+
+    slots: list[Any]
+    seed: int = 0
+    size: tuple[int, int] | None = None
+    warm: Mapping[str, Any] = field(default_factory=dict)
+    cancel: Flag = field(default_factory=Flag)
+    emit: Callable[[Event], None] | None = None
+    begun: dict[int, int] = field(default_factory=dict)  # cell → the level its value is at
+    record: records.Record = field(default_factory=records.Record)
+
+    def check(self) -> None:
+        """Raises Cancelled if the run was interrupted."""
+        if self.cancel.is_set():
+            raise Cancelled.of("VI130", "the run was interrupted")
+
+    def note(self, node: str, frame: Frame, what: str, name: str, value: Any) -> None:
+        """Records what a module says through its context."""
+        place = (node, frame.level, frame.turn)
+        if what == "measure":
+            self.record.measures.append(records.Measure(*place, name, value))
+            self.tell(Measured(*place, name, value))
+        else:
+            self.record.warnings.append(records.Warned(*place, name, value))
+            self.tell(Warned(*place, name, value))
+
+    def tell(self, event: Event) -> None:
+        """Hands an event to whoever listens."""
+        if self.emit is not None:
+            self.emit(event)
+
+
+def emitter(observers: Sequence[Observer]) -> Callable[[Event], None] | None:
+    """One callable for all observers; None for none."""
+    if not observers:
+        return None
+    if len(observers) == 1:
+        return observers[0]
+
+    def emit(event: Event) -> None:
+        for observer in observers:
+            observer(event)
+
+    return emit

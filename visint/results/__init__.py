@@ -1,0 +1,7 @@
+"""What a run gives: outputs with confidence and evidence, the record of how they came about, and files of it."""
+
+from visint.results.provenance import Source
+from visint.results.records import Measure, Record, Stop, Timing, Turn, Warned
+from visint.results.result import Result, gather
+
+__all__ = ["Measure", "Record", "Result", "Source", "Stop", "Timing", "Turn", "Warned", "gather"]

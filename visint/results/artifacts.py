@@ -1,0 +1,122 @@
+"""The files of a result: one an output by its name and kind, and the records."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping
+from os import PathLike, fspath
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visint import io
+from visint.arrays import Array
+from visint.fields import geometry
+from visint.fields.evidence import Evidence, known
+from visint.results import pictures
+from visint.results.provenance import Source, provenance
+from visint.results.report import report
+
+if TYPE_CHECKING:
+    from visint.results.result import Result
+
+__all__ = ["files_of", "save"]
+
+Files = Iterator[tuple[str, bytes]]
+
+
+def save(
+    result: Result, folder: str | PathLike[str], *, force: bool, sources: Mapping[str, Source]
+) -> tuple[str, ...]:
+    """Writes every file of ``result`` into ``folder``, all or none; gives their names."""
+    with io.OutputFolder(fspath(folder), force=force) as place:
+        for name, data in files_of(result):
+            place.write(name, data)
+        place.write("profile.json", _json(_profile(result)))
+        place.write("report.html", report(result).encode())
+        files = [*place.files, "run.json"]
+        place.write("run.json", _json({**provenance(result, sources), "files": files}))
+        return place.files
+
+
+def files_of(result: Result) -> Files:
+    """(file name, bytes) of every output, its confidence, the evidence and the points; made one by one."""
+    writers = result.graph.catalog.writers()
+    for name, value in result.outputs.items():
+        kind = result.kinds[name]
+        if kind in writers:
+            yield from writers[kind](name, value).items()
+        elif kind in _BY_KIND:
+            yield from _BY_KIND[kind](name, value)
+        elif isinstance(value, np.ndarray):
+            yield f"{name}.npz", io.encode_npz({name: value})
+    for name, value in result.confidence.items():
+        yield f"{name}_confidence.pfm", io.encode_pfm(value)
+    if result.evidence:
+        yield "evidence.npz", io.encode_npz(dict(_evidence(result.evidence)))
+    yield from _points(result)
+
+
+def _pfm(name: str, value: Array) -> Files:
+    yield f"{name}.pfm", io.encode_pfm(value)
+
+
+def _disparity(name: str, value: Array) -> Files:
+    yield from _pfm(name, value)
+    if io.fits_kitti(value):
+        yield f"{name}.png", io.encode_kitti(value)
+
+
+def _normals(name: str, value: Array) -> Files:
+    yield f"{name}.npz", io.encode_npz({name: value})
+    yield f"{name}.png", io.encode_png(pictures.of_normals(value))
+
+
+def _mask(name: str, value: Array) -> Files:
+    yield f"{name}.png", io.encode_png(value)
+
+
+def _regions(name: str, value: Array) -> Files:
+    yield f"{name}.npz", io.encode_npz({name: value})
+    yield f"{name}.png", io.encode_png(pictures.of_regions(value))
+
+
+_BY_KIND: Mapping[str, Callable[[str, Any], Files]] = {
+    **dict.fromkeys(("Depth", "Relief", "Image", "Color", "Confidence", "Sigma"), _pfm),
+    "Disparity": _disparity,
+    "Normals": _normals,
+    "Boundaries": _mask,
+    "Mask": _mask,
+    "Regions": _regions,
+}
+
+
+def _evidence(evidence: Mapping[str, Evidence]) -> Iterator[tuple[str, Array]]:
+    for name, one in evidence.items():
+        yield f"{name}.{one.measures.lower()}", one.value
+        yield f"{name}.sigma", one.sigma
+        yield f"{name}.reliability", one.reliability
+
+
+def _points(result: Result) -> Files:
+    """The known points of the first depth map, with their colour and normals."""
+    camera = result.camera
+    depth = next((value for name, value in result.outputs.items() if result.kinds[name] == "Depth"), None)
+    if camera is None or depth is None or not known(depth).any():
+        return
+    normals = next((value for name, value in result.outputs.items() if result.kinds[name] == "Normals"), None)
+    points = geometry.back_project(depth, camera)
+    picture = pictures.of_reference(result)
+    yield "points.ply", io.encode_ply(points, normals=normals, colors=picture, unit=camera.unit)
+
+
+def _profile(result: Result) -> dict[str, Any]:
+    return {
+        "graph": result.graph.name,
+        "seconds": result.seconds,
+        "nodes": [timing._asdict() for timing in result.record.timings()],
+    }
+
+
+def _json(data: Any) -> bytes:
+    return (json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()

@@ -1,0 +1,88 @@
+"""Fields as pictures to look at: uint8 RGB (H, W, 3)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visint import io
+from visint.arrays import Array
+from visint.fields.evidence import known
+
+if TYPE_CHECKING:
+    from visint.results.result import Result
+
+__all__ = [
+    "of_confidence",
+    "of_image",
+    "of_mask",
+    "of_normals",
+    "of_reference",
+    "of_regions",
+    "of_scalar",
+    "span",
+]
+
+_UNKNOWN = np.uint8(32)
+
+
+def span(value: Array) -> tuple[float, float]:
+    """The range that a picture of ``value`` shows: the 2nd to the 98th percentile of the known."""
+    seen = value[known(value)]
+    if not seen.size:
+        return 0.0, 1.0
+    low, high = (float(q) for q in np.percentile(seen, (2, 98)))
+    return low, high if high > low else low + 1.0
+
+
+def of_scalar(value: Array, low: float, high: float) -> Array:
+    """A map (H, W) in the turbo colours from ``low`` (blue) to ``high`` (red); unknown is dark grey."""
+    import cv2
+
+    with np.errstate(invalid="ignore"):
+        level = np.clip((value - low) / (high - low), 0, 1)
+    grey = np.nan_to_num(level * 255).astype(np.uint8)
+    rgb = cv2.cvtColor(cv2.applyColorMap(grey, cv2.COLORMAP_TURBO), cv2.COLOR_BGR2RGB)
+    return np.asarray(np.where(known(value)[..., None], rgb, _UNKNOWN), dtype=np.uint8)
+
+
+def of_confidence(value: Array) -> Array:
+    """Confidence (H, W) in [0, 1] as grey: white is sure."""
+    grey = np.clip(np.nan_to_num(value) * 255, 0, 255).astype(np.uint8)
+    return np.repeat(grey[..., None], 3, axis=-1)
+
+
+def of_normals(value: Array) -> Array:
+    """Normals (H, W, 3) in the usual colours: red to the right, green up, blue towards the camera."""
+    flipped = value * np.array([1, -1, -1], np.float32)
+    rgb = np.nan_to_num((flipped + 1) * 127.5).astype(np.uint8)
+    return np.where(known(value)[..., None], rgb, _UNKNOWN).astype(np.uint8)
+
+
+def of_regions(value: Array) -> Array:
+    """Regions (H, W) in colours that differ from label to label; boundaries are black."""
+    mixed = value.astype(np.uint32) * np.uint32(2654435761)
+    rgb = np.stack([(mixed >> shift) & 0x7F for shift in (8, 16, 24)], axis=-1) + 96
+    return np.where((value == 0)[..., None], 0, rgb).astype(np.uint8)
+
+
+def of_mask(value: Array) -> Array:
+    """A mask or boundaries (H, W): white where set."""
+    return np.repeat((value.astype(np.uint8) * 255)[..., None], 3, axis=-1)
+
+
+def of_image(value: Array) -> Array:
+    """A linear image (H, W) or (H, W, 3) as it would look on a screen."""
+    rgb = io.srgb_from_linear(value)
+    return np.repeat(rgb[..., None], 3, axis=-1) if rgb.ndim == 2 else rgb
+
+
+def of_reference(result: Result) -> Array | None:
+    """The reference view, the first image among the inputs; None if there is none."""
+    for name, spec in result.graph.inputs.items():
+        value: Any = result.inputs.get(name)
+        first = value[0] if isinstance(value, tuple) and value else value
+        if spec.kind in ("Image", "Color") and isinstance(first, np.ndarray):
+            return of_image(first)
+    return None

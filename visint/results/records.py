@@ -1,0 +1,84 @@
+"""What a run leaves on record beside its maps: turns, stops, warnings, measures, timings."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Literal, NamedTuple
+
+__all__ = ["Measure", "Reason", "Record", "Stop", "Timing", "Turn", "Warned"]
+
+Reason = Literal["times", "converged", "held", "exhausted"]
+
+
+class Turn(NamedTuple):
+    """One turn of a loop that watches its convergence; ``change`` is NaN where nothing could be compared."""
+
+    loop: str
+    level: int
+    turn: int
+    change: float
+
+
+class Stop(NamedTuple):
+    """Why a loop ended: all its ``times``, ``converged``, ``held``, or ``exhausted`` before its end condition."""
+
+    loop: str
+    level: int
+    turns: int
+    reason: Reason
+
+
+class Warned(NamedTuple):
+    """Something a module or the engine had to say."""
+
+    node: str
+    level: int
+    turn: int
+    code: str
+    text: str
+
+
+class Measure(NamedTuple):
+    """A number a module recorded."""
+
+    node: str
+    level: int
+    turn: int
+    name: str
+    value: float
+
+
+class Timing(NamedTuple):
+    """Calls and seconds of a node at a level."""
+
+    node: str
+    level: int
+    calls: int
+    seconds: float
+
+
+@dataclass(slots=True)
+class Record:
+    """Everything of the above, as one run fills it."""
+
+    turns: list[Turn] = field(default_factory=list)
+    stops: list[Stop] = field(default_factory=list)
+    warnings: list[Warned] = field(default_factory=list)
+    measures: list[Measure] = field(default_factory=list)
+    seconds: dict[tuple[str, int], list[float]] = field(default_factory=lambda: defaultdict(lambda: [0, 0.0]))
+
+    def timings(self) -> Iterator[Timing]:
+        """Calls and seconds by node and level, in the order of first calls."""
+        for (node, level), (calls, seconds) in self.seconds.items():
+            yield Timing(node, level, int(calls), seconds)
+
+    def in_order(self, loops: Iterable[str], nodes: Iterable[str]) -> None:
+        """Sorts by loop and by node, keeping the order of time within each: threads may have mixed them."""
+        loop_rank = {name: i for i, name in enumerate(loops)}
+        rank = loop_rank | {name: i for i, name in enumerate(nodes)}
+        self.turns.sort(key=lambda turn: loop_rank[turn.loop])
+        self.stops.sort(key=lambda stop: loop_rank[stop.loop])
+        self.warnings.sort(key=lambda warned: rank.get(warned.node, -1))
+        self.measures.sort(key=lambda measure: rank.get(measure.node, -1))

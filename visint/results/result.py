@@ -1,0 +1,171 @@
+"""The result of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from os import PathLike
+from typing import Any
+
+from visint.arrays import Array, read_only
+from visint.fields.camera import Camera
+from visint.fields.evidence import Evidence
+from visint.fields.snapshot import MapSnapshot, Writer
+from visint.graph.graph import Graph
+from visint.names import did_you_mean
+from visint.results.derive import derived
+from visint.results.provenance import Source
+from visint.results.records import Record, Stop, Turn, Warned
+
+__all__ = ["Result", "gather"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Result(Mapping[str, Any]):
+    """The outputs of a run by name, ``result["depth"]``, and everything else it leaves.
+
+    Attributes
+    ----------
+    graph, inputs, seed
+        What was run, on what, from which seed.
+    outputs
+        Every output: arrays, and what else the graph gives. Derived ones included.
+    kinds
+        The field kind of each.
+    confidence
+        float32 (H, W) in [0, 1] by output, where it is known.
+    evidence
+        What each spoke said last, by spoke.
+    writers
+        Who wrote the field of the map that an output was read from last.
+    record
+        Turns, stops, warnings, measures and timings.
+    seconds
+        How long the run took.
+    """
+
+    graph: Graph
+    inputs: Mapping[str, Any]
+    outputs: Mapping[str, Any]
+    kinds: Mapping[str, str]
+    confidence: Mapping[str, Array] = field(default_factory=dict)
+    evidence: Mapping[str, Evidence] = field(default_factory=dict)
+    writers: Mapping[str, Writer] = field(default_factory=dict)
+    record: Record = field(default_factory=Record)
+    seed: int = 0
+    seconds: float = 0.0
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self.outputs:
+            near = did_you_mean(name, self.outputs)
+            hint = f"; did you mean {near!r}?" if near else f"; there are {', '.join(self.outputs)}"
+            raise KeyError(f"no output {name!r}{hint}")
+        return self.outputs[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.outputs)
+
+    def __len__(self) -> int:
+        return len(self.outputs)
+
+    def __repr__(self) -> str:
+        outputs = ", ".join(f"{name}: {kind}" for name, kind in self.kinds.items())
+        return f"<Result of {self.graph.name!r}: {outputs}; {self.seconds:.2f} s>"
+
+    @property
+    def camera(self) -> Camera | None:
+        """The camera among the inputs, if there was one."""
+        return next((value for value in self.inputs.values() if isinstance(value, Camera)), None)
+
+    @property
+    def trace(self) -> list[Turn]:
+        """How much each watched value changed, turn by turn."""
+        return self.record.turns
+
+    @property
+    def stops(self) -> list[Stop]:
+        """Why each loop ended, each time it ran."""
+        return self.record.stops
+
+    @property
+    def warnings(self) -> list[Warned]:
+        """What modules and the engine had to say."""
+        return self.record.warnings
+
+    def save(
+        self,
+        folder: str | PathLike[str],
+        *,
+        force: bool = False,
+        sources: Mapping[str, Source] | None = None,
+    ) -> tuple[str, ...]:
+        """Writes every artifact, and gives their file names; all are there, or none.
+
+        Parameters
+        ----------
+        folder
+            Missing, empty or a former run.
+        force
+            Take a folder that holds other things too.
+        sources
+            The files the inputs were read from; with them the run can be done again from ``run.json``.
+
+        Raises
+        ------
+        OutputError
+            If the folder is refused or the disk is.
+        """
+        from visint.results.artifacts import save
+
+        return save(self, folder, force=force, sources=sources or {})
+
+
+def gather(
+    graph: Graph,
+    inputs: Mapping[str, Any],
+    outputs: Mapping[str, Any],
+    *,
+    maps: Mapping[str, MapSnapshot | None],
+    evidence: Mapping[str, Evidence],
+    record: Record,
+    seed: int = 0,
+    seconds: float = 0.0,
+) -> Result:
+    """The result made of what the engine holds at the end of a run; derives what follows from a camera."""
+    typed = {name: (graph.outputs[name].kind.name, value) for name, value in outputs.items()}
+    camera = next((value for value in inputs.values() if isinstance(value, Camera)), None)
+    confidence: dict[str, Array] = {}
+    writers: dict[str, Writer] = {}
+    for name, snapshot in maps.items():
+        field_name = _field_of(graph, name)
+        sure = snapshot.confidence.get(field_name) if snapshot else None
+        if sure is not None:
+            confidence[name] = sure
+        if snapshot and field_name in snapshot.writers:
+            writers[name] = snapshot.writers[field_name]
+    origins = {}
+    for name, (kind, value, origin) in derived(typed, camera).items():
+        typed[name], origins[name] = (kind, value), origin
+    for name, (_, value) in typed.items():
+        if isinstance(value, Evidence):
+            confidence[name] = value.reliability
+    confidence |= {name: confidence[origin] for name, origin in origins.items() if origin in confidence}
+    values = {name: _plain(value) for name, (_, value) in typed.items()}
+    kinds = {name: kind for name, (kind, _) in typed.items()}
+    return Result(graph, dict(inputs), values, kinds, confidence, evidence, writers, record, seed, seconds)
+
+
+def _field_of(graph: Graph, output: str) -> str:
+    """The stored field behind an output read from the map: derived ones follow from depth or boundaries."""
+    port = graph.outputs[output].source.port
+    port = port.removesuffix("_confidence")
+    return {"disparity": "depth", "normals": "depth", "slopes": "depth", "regions": "boundaries"}.get(
+        port, port
+    )
+
+
+def _plain(value: Any) -> Any:
+    import numpy as np
+
+    value = value.value if isinstance(value, Evidence) else value
+    return read_only(value) if isinstance(value, np.ndarray) else value

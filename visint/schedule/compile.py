@@ -1,0 +1,58 @@
+"""Compiling a bound graph: blocks in topological order, slots for values, and their last readers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import networkx as nx
+
+from visint.graph.graph import INPUTS, Graph
+from visint.schedule.blocks import Blocks
+from visint.schedule.layout import Layout
+from visint.schedule.order import effective_loops, structural_keys, wires
+from visint.schedule.steps import Block, Item, Pyramid, Repeat, Schedule, Step
+
+__all__ = ["compile_graph"]
+
+
+def compile_graph(graph: Graph) -> Schedule:
+    """The schedule of ``graph``. It depends on the graph alone; compiling runs nothing."""
+    joined = wires(graph)
+    order = list(nx.topological_sort(joined))
+    keys = structural_keys(graph, order)
+    blocks = Blocks(graph, effective_loops(graph, order), keys, joined)
+    layout = Layout(graph, blocks)
+    for name in order:
+        layout.add_node(name)
+    layout.add_ends()
+    return Schedule(
+        graph,
+        layout.count,
+        tuple((ref.port, reader, slot) for (ref, reader), slot in layout.slots.items() if ref.node == INPUTS),
+        _block(layout, blocks, None, keys),
+        layout.outputs,
+        layout.kept,
+        layout.maps,
+        {loop: tuple(cell.slot for cell in layout.cells if cell.restart == loop) for loop in graph.loops},
+    )
+
+
+def _block(layout: Layout, blocks: Blocks, loop: str | None, keys: Mapping[str, int]) -> Block:
+    items: list[Item] = []
+    for what, name in blocks.items(loop):
+        if what == "loop":
+            items.append(_loop(layout, name, _block(layout, blocks, name, keys)))
+        else:
+            node = layout.graph.nodes[name]
+            items.append(Step(node, tuple(layout.ins[name]), tuple(layout.outs(name)), keys[name]))
+    return Block(tuple(items), layout.frees(loop), blocks.waits(loop))
+
+
+def _loop(layout: Layout, name: str, body: Block) -> Item:
+    loop = layout.graph.loops[name]
+    cells = tuple(cell for cell in layout.cells if cell.loop == name)
+    if not loop.pyramid:
+        return Repeat(loop, body, cells, *layout.until.get(name, (None, None)))
+    carried = tuple(cell for cell in layout.cells if name in layout.graph.loops_around(cell.loop))
+    fits = tuple(fit for (_, pyramid), fit in layout.fits.items() if pyramid == name)
+    return Pyramid(loop, body, cells, fits, carried)
