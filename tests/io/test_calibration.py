@@ -136,5 +136,5 @@ def test_another_sort_of_file_is_refused_in_one_line(put, text):
 )
 def test_files_that_are_no_text_are_refused(put, data):
     """By the checks of every text file."""
-    with pytest.raises(InputError, match="VI30[23]"):
+    with pytest.raises(InputError, match=r"VI30[23]"):
         visint.io.read_camera(put(data))

@@ -24,6 +24,10 @@ def record(*files):
     return json.dumps({"visint": "0.1.0", "files": [*files, "run.json"]}).encode()
 
 
+def names(folder):
+    return sorted(path.name for path in Path(folder).iterdir())
+
+
 def write_run(path, force=False, **files):
     """A run of these files: ``depth=b"x"`` becomes depth.pfm."""
     with visint.io.OutputFolder(path, force=force) as folder:
@@ -45,7 +49,7 @@ def test_a_missing_folder_appears_whole(tmp_path):
     (tmp_path / "other").mkdir()
     assert tree(out) == {"depth.pfm": b"1"}
     assert out.stat().st_mode == (tmp_path / "other").stat().st_mode
-    assert sorted(os.listdir(tmp_path)) == ["a", "other"]
+    assert names(tmp_path) == ["a", "other"]
 
 
 def test_an_empty_folder_is_filled_and_stays_itself(tmp_path):
@@ -60,7 +64,7 @@ def test_the_working_folder_may_be_the_output(tmp_path, monkeypatch):
     """``--out .``"""
     monkeypatch.chdir(tmp_path)
     write_run(".", depth=b"1")
-    assert set(os.listdir()) == {"depth.pfm", "run.json"}
+    assert set(names(".")) == {"depth.pfm", "run.json"}
 
 
 def test_a_former_run_is_replaced_and_strangers_stay(tmp_path):
@@ -85,9 +89,9 @@ def test_a_folder_of_other_things_is_refused(tmp_path, content):
 
 def test_a_file_is_no_folder(tmp_path, put):
     """Not with force either."""
-    with pytest.raises(OutputError, match="VI602 .*is a file; wants a folder"):
+    with pytest.raises(OutputError, match=r"VI602 .*is a file; wants a folder"):
         visint.io.OutputFolder(put(b"", "file"), force=True)
-    with pytest.raises(OutputError, match="VI602 .*file: is a file; wants a folder"):
+    with pytest.raises(OutputError, match=r"VI602 .*file: is a file; wants a folder"):
         visint.io.OutputFolder(tmp_path / "file" / "below" / "out")
 
 
@@ -109,7 +113,7 @@ def test_a_record_cannot_have_other_files_removed(tmp_path):
     secret.write_bytes(b"keep")
     (out / "sub").mkdir(parents=True)
     (out / "sub" / "inner").write_bytes(b"keep")
-    names = [
+    listed = [
         "../secret",
         str(secret),
         "sub/inner",
@@ -124,7 +128,7 @@ def test_a_record_cannot_have_other_files_removed(tmp_path):
         "x" * 999,
         "old.pfm",
     ]
-    (out / "run.json").write_text(json.dumps({"visint": "9", "files": names}))
+    (out / "run.json").write_text(json.dumps({"visint": "9", "files": listed}))
     (out / "old.pfm").write_bytes(b"old")
     assert former_files(out) == ("old.pfm",)
     write_run(out, depth=b"1")
@@ -145,11 +149,11 @@ def test_an_exception_leaves_everything_as_it_was(tmp_path, kind, start):
     if start == "run":
         write_run(out, depth=b"1")
     before = tree(out) if out.exists() else None
-    with pytest.raises(kind), visint.io.OutputFolder(out) as folder:
+    with pytest.raises(kind), visint.io.OutputFolder(out) as folder:  # noqa: PT012 - it is the block
         folder.write("depth.pfm", b"2")
         raise kind
     assert (tree(out) if out.exists() else None) == before
-    assert os.listdir(tmp_path) == ([] if start == "missing" else ["out"])
+    assert names(tmp_path) == ([] if start == "missing" else ["out"])
 
 
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EIO, errno.EACCES])
@@ -177,7 +181,7 @@ def test_every_rename_may_fail(tmp_path, monkeypatch, number, nth, start):
     monkeypatch.undo()
     write_run(out, depth=b"2")
     assert tree(out) == {"depth.pfm": b"2", "run.json": record("depth.pfm")}
-    assert os.listdir(tmp_path) == ["out"]
+    assert names(tmp_path) == ["out"]
 
 
 def test_ctrl_c_while_moving_waits_for_the_last_file(tmp_path, monkeypatch):
@@ -209,7 +213,7 @@ def test_names_are_plain(tmp_path, name):
     """No artifact leaves its folder."""
     with pytest.raises(OutputError, match="VI601"), visint.io.OutputFolder(tmp_path / "out") as folder:
         folder.write(name, b"")
-    assert os.listdir(tmp_path) == []
+    assert names(tmp_path) == []
 
 
 def test_writing_outside_the_block_is_a_mistake_of_the_caller(tmp_path):
@@ -235,7 +239,7 @@ def test_a_folder_made_by_another_run_meanwhile_is_judged_again(tmp_path):
         write_run(out, depth=b"1")
     assert tree(out) == {"depth.pfm": b"2"}
     shutil.rmtree(out)
-    with pytest.raises(OutputError, match="VI602"), visint.io.OutputFolder(out) as folder:
+    with pytest.raises(OutputError, match="VI602"), visint.io.OutputFolder(out) as folder:  # noqa: PT012
         folder.write("depth.pfm", b"2")
         out.mkdir()
         (out / "mine").write_bytes(b"x")
@@ -263,7 +267,7 @@ def test_a_killed_run_leaves_a_folder_that_the_next_one_takes(tmp_path):
         run.kill()
         run.communicate()
         if (out / "run.json").exists():
-            assert len([name for name in os.listdir(out) if name.endswith(".pfm")]) == 4
+            assert len(list(out.glob("*.pfm"))) == 4
     write_run(out, depth=b"1")
-    assert [name for name in os.listdir(out) if name.startswith(".")] == []
-    assert "depth.pfm" in os.listdir(out)
+    assert not list(out.glob(".*"))
+    assert "depth.pfm" in names(out)

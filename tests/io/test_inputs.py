@@ -156,7 +156,7 @@ def test_a_plugins_own_kind_is_read_by_its_spec(make, put):
     spec = ArraySpec("flow.Flow", "float32", ("H", "W", 2), "px")
     flow, other = np.ones((2, 3, 2), np.float32), np.zeros(1)
     assert visint.io.read(put(make.stored(None, flow=flow, other=other)), spec).shape == (2, 3, 2)
-    with pytest.raises(InputError, match="is PNG; a flow.Flow is read from npy, npz"):
+    with pytest.raises(InputError, match=r"is PNG; a flow.Flow is read from npy, npz"):
         visint.io.read(put(make.png(EIGHT)), spec)
 
 

@@ -31,7 +31,7 @@ def test_disparities_beyond_the_format_are_refused(value):
     """Converging rigs have negative ones; they would be lost without a word."""
     disparity = np.array([[1, value]], np.float32)
     assert not visint.io.fits_kitti(disparity)
-    with pytest.raises(OutputError, match="VI603.*outside 0"):
+    with pytest.raises(OutputError, match=r"VI603.*outside 0"):
         visint.io.encode_kitti(disparity)
 
 

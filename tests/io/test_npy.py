@@ -153,7 +153,7 @@ def test_broken_archives_are_refused_in_words(make, put, rng):
 
 
 def test_zip_bombs_are_refused_by_their_directory(make, put):
-    """A member, or all together, that unpack to more than the limits; too many members; a lie about the size."""
+    """Members that unpack to more than the limits, one or all; too many of them; a lie about the size."""
     header = make.npy(F4 % "(50000, 1000)")
     small = visint.io.Limits(megabytes=20)
     with pytest.raises(InputError, match="VI303"):
@@ -165,7 +165,7 @@ def test_zip_bombs_are_refused_by_their_directory(make, put):
     liar = bytearray(make.zipped(depth=header + bytes(10_000_000)))
     at = liar.index(b"PK\x01\x02")
     liar[at + 24 : at + 28] = (100).to_bytes(4, "little")
-    with pytest.raises(InputError, match="VI302|VI303"):
+    with pytest.raises(InputError, match=r"VI302|VI303"):
         visint.io.read(put(bytes(liar)), "Depth")
 
 

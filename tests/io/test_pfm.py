@@ -97,5 +97,5 @@ def test_broken_files_are_refused_in_words(put, data, words):
 )
 def test_arrays_without_an_exact_pfm_are_refused(array):
     """PFM holds float32 of one or three channels and nothing else."""
-    with pytest.raises(OutputError, match="VI603.*wants float32"):
+    with pytest.raises(OutputError, match=r"VI603.*wants float32"):
         visint.io.encode_pfm(array)

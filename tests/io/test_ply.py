@@ -71,5 +71,5 @@ def test_a_unit_stays_in_its_comment():
 )
 def test_other_arrays_are_refused(arrays):
     """Another dtype or shape is no point cloud."""
-    with pytest.raises(OutputError, match="VI603.*wants"):
+    with pytest.raises(OutputError, match=r"VI603.*wants"):
         visint.io.encode_ply(**arrays)

@@ -22,10 +22,11 @@ def random_samples(rng, size, colour, depth):
 
 
 @pytest.mark.parametrize("size", SIZES, ids=str)
-@pytest.mark.parametrize(("colour", "depth"), SORTS)
+@pytest.mark.parametrize("sort", SORTS, ids=str)
 @pytest.mark.parametrize("interlace", [False, True])
-def test_every_sort_of_png_gives_the_samples_that_were_stored(make, put, rng, size, colour, depth, interlace):
+def test_every_sort_of_png_gives_the_samples_that_were_stored(make, put, rng, size, sort, interlace):
     """Grey and RGB of each depth come back exactly; of grey+alpha and RGBA the colours do."""
+    colour, depth = sort
     samples = random_samples(rng, size, colour, depth)
     raster = visint.io.read_raster(put(make.png(samples, colour, depth, interlace)))
     wanted = {0: samples, 2: samples, 4: samples[..., 0], 6: samples[..., :3]}[colour]

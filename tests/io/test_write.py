@@ -9,11 +9,16 @@ import shutil
 import subprocess
 import sys
 from collections import namedtuple
+from pathlib import Path
 
 import pytest
 
 import visint.io
 from visint.errors import OutputError
+
+
+def names(folder):
+    return sorted(path.name for path in Path(folder).iterdir())
 
 
 def test_bytes_and_text_arrive(tmp_path):
@@ -24,7 +29,7 @@ def test_bytes_and_text_arrive(tmp_path):
     visint.io.write_text(tmp_path / "b.txt", "ä\n")
     assert path.read_bytes() == b"two"
     assert (tmp_path / "b.txt").read_bytes() == b"\xc3\xa4\n"
-    assert sorted(os.listdir(tmp_path)) == ["a.bin", "b.txt"]
+    assert names(tmp_path) == ["a.bin", "b.txt"]
 
 
 def test_new_files_have_usual_permissions(tmp_path):
@@ -55,7 +60,7 @@ def test_every_step_may_fail(tmp_path, monkeypatch, step, number):
     monkeypatch.undo()
     assert caught.value.exit_code == 5
     assert path.read_bytes() == b"former"
-    assert os.listdir(tmp_path) == ["depth.pfm"]
+    assert names(tmp_path) == ["depth.pfm"]
 
 
 def test_interruption_leaves_the_former_file(tmp_path, monkeypatch):
@@ -67,7 +72,7 @@ def test_interruption_leaves_the_former_file(tmp_path, monkeypatch):
     monkeypatch.setattr(os, "fsync", interrupt)
     with pytest.raises(KeyboardInterrupt):
         visint.io.write_bytes(tmp_path / "a", b"new")
-    assert os.listdir(tmp_path) == []
+    assert names(tmp_path) == []
 
 
 def test_a_full_disk_says_how_much_is_missing(tmp_path, monkeypatch):
@@ -118,5 +123,5 @@ except OutputError as error:
         [sys.executable, "-c", program, tmp_path / "a"], capture_output=True, text=True, check=True
     )
     assert "larger than this process or disk may write" in run.stdout
-    assert os.listdir(tmp_path) == []
+    assert names(tmp_path) == []
     assert resource.getrlimit(resource.RLIMIT_FSIZE)[0] != 1000
