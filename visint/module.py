@@ -61,7 +61,7 @@ class PortSpec:
     def __str__(self) -> str:
         text = str(self.array) if self.array and not self.evidence else self.kind
         text = f"{self.kind} evidence" if self.evidence else text
-        return f"[{text}]" if self.many else text + "?" * self.optional
+        return (f"[{text}]" if self.many else text) + "?" * self.optional
 
 
 class Ports(BaseModel):
@@ -114,6 +114,7 @@ def _port(name: str, annotation: Any) -> PortSpec:
 
 
 _PLAIN = {float: "Scalar", int: "Scalar", bool: "Flag", str: "Text"}
+_ANYTHING: tuple[object, ...] = (Any, object, np.ndarray, list, tuple, dict, set)
 
 
 def _kind(name: str, annotation: Any) -> tuple[str, ArraySpec | None, bool]:
@@ -123,7 +124,10 @@ def _kind(name: str, annotation: Any) -> tuple[str, ArraySpec | None, bool]:
             if isinstance(extra, ArraySpec):
                 return extra.kind, extra, False
         annotation = get_args(annotation)[0]
-    if not isinstance(annotation, type):
+    if isinstance(annotation, typing.ForwardRef):
+        spelled = annotation.__forward_arg__
+        raise TypeError(f"port {name!r}: {spelled!r} is not known at run time; import it outside TYPE_CHECKING")
+    if not isinstance(annotation, type) or annotation in _ANYTHING:
         raise TypeError(f'port {name!r}: {annotation} is no port type; write for instance Depth[Array, "H W"]')
     if issubclass(annotation, Evidence):
         _, array, _ = _kind(name, _annotation(annotation, "value"))
@@ -277,9 +281,10 @@ class Module(ABC, Generic[P, I, O]):
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
-        for base in getattr(cls, "__orig_bases__", ()):
-            if typing.get_origin(base) is Module:
-                cls.Params, cls.Inputs, cls.Outputs = get_args(base)
+        for base in cls.__dict__.get("__orig_bases__", ()):
+            origin = get_origin(base)
+            if isinstance(origin, type) and issubclass(origin, Module):
+                cls.Params, cls.Inputs, cls.Outputs = _models(origin, get_args(base), cls.__qualname__)
 
     def __init__(self, params: P | None = None) -> None:
         self.params: P = params if params is not None else typing.cast("P", type(self).Params())
@@ -287,3 +292,16 @@ class Module(ABC, Generic[P, I, O]):
     @abstractmethod
     def run(self, inputs: I, ctx: Context) -> O:
         """What the module recovers from ``inputs``; see the eight sentences above."""
+
+
+def _models(origin: type[Module[Any, Any, Any]], given: tuple[Any, ...], of: str) -> tuple[Any, Any, Any]:
+    """The three models of the class ``of``, whose base is ``origin[given]``; some may still be left open."""
+    if origin is not Module:
+        filled = dict(zip(origin.__parameters__, given, strict=True))  # type: ignore[attr-defined]
+        given = tuple(filled.get(model, model) for model in (origin.Params, origin.Inputs, origin.Outputs))
+    for model, wanted in zip(given, (Params, Ports, Ports), strict=True):
+        if not isinstance(model, TypeVar) and not (isinstance(model, type) and issubclass(model, wanted)):
+            raise TypeError(
+                f"{of}: {model!r} is no subclass of {wanted.__name__}; write Module[Params, Inputs, Outputs]"
+            )
+    return given[0], given[1], given[2]
