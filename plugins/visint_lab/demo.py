@@ -29,7 +29,7 @@ def command(
     """Render a textured sphere before a plane, reconstruct it, and say where the report is."""
     import visint
     from visint_lab.render.rendering import render
-    from visint_lab.stage import sphere_before_plane
+    from visint_lab.scenes.demonstration import sphere_before_plane
 
     bound = visint.load(graph)
     pair = render(sphere_before_plane(size, seed))

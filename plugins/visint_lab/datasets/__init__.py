@@ -1,0 +1,1 @@
+"""Data sets: pairs with truth from folders on disk, through visint's own readers."""
