@@ -29,7 +29,7 @@ class Many(Ports):
 
 def summary(**values):
     """Of one port of a finished node."""
-    finished = NodeFinished("match", 0, 0, 0.0, 0.1, Many(**values))
+    finished = NodeFinished("match", 0, 0, 0.0, 0.1, Many(**values).__dict__)
     ((name, _),) = values.items()
     return finished.summary()[name]
 
@@ -69,7 +69,7 @@ class TestSummary:
         assert summary(number=None) == "none"
 
     def test_every_port_is_in_it(self):
-        assert list(NodeFinished("a", 0, 0, 0.0, 0.1, Many()).summary()) == list(Many.specs)
+        assert list(NodeFinished("a", 0, 0, 0.0, 0.1, Many().__dict__).summary()) == list(Many.specs)
 
 
 class TestTuples:

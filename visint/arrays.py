@@ -130,6 +130,8 @@ class ArrayKind:
     --------
     A stranger's kind, for both the type checker and visint::
 
+        __all__ = ["Flow"]  # else mypy's strict rules keep it from being imported elsewhere
+
         if TYPE_CHECKING:
             from typing import Annotated as Flow
         else:

@@ -43,18 +43,18 @@ class NodeStarted(NamedTuple):
 
 
 class NodeFinished(NamedTuple):
-    """A node has run in ``seconds``; ``outputs`` are its ports' values, not to be kept."""
+    """A node has run in ``seconds``; ``outputs`` are its values by port, not to be kept."""
 
     node: str
     level: int
     turn: int
     clock: float
     seconds: float
-    outputs: Any
+    outputs: Mapping[str, Any]
 
     def summary(self) -> Mapping[str, str]:
         """A few words an output port: type, shape, range of the known. Costs a pass over the arrays."""
-        return {name: _summary(value) for name, value in self.outputs.__dict__.items()}
+        return {name: _summary(value) for name, value in self.outputs.items()}
 
 
 class NodeFailed(NamedTuple):
