@@ -175,6 +175,15 @@ def test_rubbish_is_refused_as_any_kind(tmp_path, kind):
             visint.io.read(path, kind)
 
 
+def test_a_member_is_not_unpacked_for_a_header_that_lies(make, tmp_path):
+    """60 MB behind a header that claims 400: refused for the lie, not for the memory that it would take."""
+    lie = make.npy("{'descr': '<f4', 'fortran_order': False, 'shape': (20000, 5000), }")
+    (tmp_path / "lie.npz").write_bytes(make.zipped(image=lie + bytes(60_000_000)))
+    ((code, _lines, said, _seconds),) = read_all([(tmp_path / "lie.npz", "Image")], megabytes=30)
+    assert code == "VI302"
+    assert "npy header claims" in said
+
+
 def test_too_little_memory_is_one_line(make, tmp_path):
     """A valid file within visint's limits, on a machine that has less."""
     (tmp_path / "valid.npy").write_bytes(make.stored(np.zeros((4000, 3000), np.float32)))

@@ -208,6 +208,22 @@ def test_a_thread_may_write_a_run(tmp_path):
     assert set(tree(tmp_path / "out")) == {"depth.pfm", "run.json"}
 
 
+def test_the_record_leaves_first_and_arrives_last(tmp_path, monkeypatch):
+    """So a folder with a record is whole at every moment, whoever looks."""
+    real, seen = Path.rename, []
+
+    def rename(self, goal):
+        seen.append(self.name)
+        return real(self, goal)
+
+    write_run(tmp_path, depth=b"1")
+    monkeypatch.setattr(Path, "rename", rename)
+    with visint.io.OutputFolder(tmp_path) as folder:
+        folder.write("run.json", record())
+        folder.write("normals.pfm", b"2")
+    assert seen == ["run.json", "depth.pfm", "normals.pfm", "run.json"]
+
+
 @pytest.mark.parametrize("name", ["", ".", "..", "a/b", "/etc/x", "a\\b", ".hidden", "n\0l", "x" * 300])
 def test_names_are_plain(tmp_path, name):
     """No artifact leaves its folder."""

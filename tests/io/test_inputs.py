@@ -61,6 +61,13 @@ def test_colour_becomes_an_image_by_luminance_of_linear_rgb(make, put):
     assert read.max() <= 1
 
 
+def test_luminance_stays_within_0_and_1(rng):
+    """White is exactly 1, and no bright colour is above it."""
+    color = 1 - rng.integers(0, 4, (64, 64, 3)).astype(np.float32) * np.float32(2**-24)
+    assert visint.io.luminance(np.ones((1, 1, 3), np.float32)).tolist() == [[1]]
+    assert visint.io.luminance(color).max() <= 1
+
+
 def test_grey_in_three_channels_is_exactly_grey(make, put, rng):
     """No rounding by three weights where there is nothing to weigh."""
     grey = rng.integers(0, 256, (4, 5), dtype=np.uint8)

@@ -58,8 +58,8 @@ def powered(value: Array, gamma: float | None) -> Array:
 
 
 def luminance(color: Array) -> Array:
-    """float32 (H, W) from linear RGB float32 (H, W, 3): 0.2126 R + 0.7152 G + 0.0722 B (BT.709), at most 1."""
+    """float32 (H, W) from linear RGB float32 (H, W, 3): 0.2126 R + 0.7152 G + 0.0722 B (BT.709)."""
     total = color[..., 0] * np.float32(_WEIGHTS[0])
     for channel in (1, 2):
         total += color[..., channel] * np.float32(_WEIGHTS[channel])
-    return np.asarray(np.minimum(total, 1, out=total))
+    return np.asarray(total)  # white is exactly 1 in this order, and rounding keeps order: never above 1

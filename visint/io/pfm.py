@@ -30,7 +30,7 @@ class _Header(NamedTuple):
 
 
 def pfm_values(data: bytes, name: str, limits: Limits) -> Array:
-    """float32 (H, W), or (H, W, 3) from a colour PFM, top row first; unknown is NaN.
+    """float32 (H, W), or (H, W, 3) from a colour PFM, top row first, as stored: unknown is infinite.
 
     Raises
     ------
@@ -46,7 +46,6 @@ def pfm_values(data: bytes, name: str, limits: Limits) -> Array:
     flat = np.frombuffer(data, "<f4" if header.little else ">f4", count, header.start)
     rows = flat.reshape(header.height, header.width, header.channels)[::-1]
     values = np.array(rows[..., 0] if header.channels == 1 else rows, dtype=np.float32, order="C")
-    values[np.isinf(values)] = np.nan
     return values
 
 
