@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
+    from visint import Graph
     from visint_lab.render.rendering import Rendering
 
 GRAPH = "stereo_sgm"
@@ -34,15 +35,14 @@ def command(
     bound = visint.load(graph)
     pair = render(sphere_before_plane(size, seed))
     result = visint.run(bound, **_wanted(bound, pair))
-    result.save(out, **({"force": True} if force else {}))
+    result.save(out, force=force)
     print(comparison(result["depth"], pair), file=sys.stderr)
     print((out / "report.html").resolve())
 
 
-def _wanted(graph: Any, pair: Rendering) -> dict[str, Any]:
+def _wanted(graph: Graph, pair: Rendering) -> dict[str, Any]:
     offered = {"left": pair.left, "right": pair.right, "camera": pair.camera, "light": pair.light}
-    names = getattr(graph, "inputs", offered)
-    return {name: value for name, value in offered.items() if name in names}
+    return {name: value for name, value in offered.items() if name in graph.inputs}
 
 
 def comparison(depth: Any, pair: Rendering) -> str:

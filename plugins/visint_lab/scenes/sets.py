@@ -46,8 +46,8 @@ def _gloss(finish: str) -> Finish:
 def set_a(name: str, surface: str, size: int = 512, pose: Pose | None = None) -> Scene:
     """Chapter 4: parallel cameras at (∓5, 0, 0), the object 50 before them, a point light at (0, 0, −100).
 
-    At 512×512 the focal length is 800 px, and disparities run from about 140 to 200 px. ``surface`` is ``lambertian``
-    or ``specular``, where an ellipsoid stands for the sphere.
+    At 512×512 the focal length is 800 px; disparities run from about 140 to 200 px. ``surface`` is
+    ``lambertian`` or ``specular``, where an ellipsoid stands for the sphere.
     """
     name = "ellipsoid" if (name, surface) == ("sphere", "specular") else name
     pose = pose or CHOSEN[name]
