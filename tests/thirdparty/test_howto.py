@@ -118,17 +118,34 @@ outputs: {speed: speed.speed, moving: speed.moving}
     assert result["moving"].all()
 
 
+WRONG = """
+from visint_focus.laplacian import FocusInputs, FocusOutputs, Laplacian
+from visint.module import Context
+
+class Wrong(Laplacian):
+    def run(self, inputs: FocusInputs, ctx: Context) -> FocusOutputs:
+        window: str = self.params.window
+        inputs.prior.mean()
+        inputs.iamges
+        return FocusOutputs(depth=inputs.images[0], sharpness=inputs.images[0])
+"""
+
+
 def test_mypy_strict_accepts_the_page(place, request):
-    """The stranger's type checker sees arrays, not spellings, and has nothing to say."""
-    cache = request.config.cache.mkdir("mypy")
-    files = [place / name for name in FILES if name.endswith(".py") and not name.startswith("visint_flow/")]
+    """The stranger's type checker sees arrays, not spellings, and has nothing to say; of mistakes it has."""
     flow = Path(importlib.import_module("visint_flow").__file__).parent
+    files = [place / name for name in FILES if name.endswith(".py") and not name.startswith("visint_flow/")]
+    (place / "wrong.py").write_text(WRONG, encoding="utf-8")
     paths = [place, flow.parent, *([] if ROOT.name == "site-packages" else [ROOT])]
     environment = {**os.environ, "MYPYPATH": os.pathsep.join(map(str, paths))}
+    cache = request.config.cache.mkdir("mypy")
     command = [sys.executable, "-m", "mypy", "--strict", "--config-file=", f"--cache-dir={cache}"]
-    command += ["--follow-imports=silent", *map(str, files), str(flow)]
+    command += ["--follow-imports=silent", "--no-pretty", *map(str, files), str(flow), "wrong.py"]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False, cwd=place)
-    assert done.returncode == 0, done.stdout + done.stderr
+    *complaints, _ = done.stdout.splitlines()
+    assert all(line.startswith("wrong.py:") for line in complaints), done.stdout + done.stderr
+    kinds = [re.search(r"\[([a-z-]+)\]$", line)[1] for line in complaints if ": error:" in line]
+    assert kinds == ["assignment", "union-attr", "attr-defined", "arg-type"], done.stdout
 
 
 def test_the_reference_page_has_the_sentences():
