@@ -45,8 +45,7 @@ def pfm_values(data: bytes, name: str, limits: Limits) -> Array:
         raise broken(name, found)
     flat = np.frombuffer(data, "<f4" if header.little else ">f4", count, header.start)
     rows = flat.reshape(header.height, header.width, header.channels)[::-1]
-    values = np.array(rows[..., 0] if header.channels == 1 else rows, dtype=np.float32, order="C")
-    return values
+    return np.array(rows[..., 0] if header.channels == 1 else rows, dtype=np.float32, order="C")
 
 
 def _header(data: bytes, name: str) -> _Header:
