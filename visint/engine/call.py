@@ -25,7 +25,7 @@ __all__ = ["Call"]
 
 Values = dict[str, Any]
 Invoke = Callable[[Values, Context], Any]
-SubGraph = Callable[[Node, Values, Context, State], Mapping[str, Any]]
+SubGraph = Callable[[Node, Values, State], Mapping[str, Any]]
 
 
 def _value(evidence: Any) -> Any:
@@ -164,7 +164,7 @@ def _defaults(node: Node) -> Values:
 
 def _by_level(node: Node, sub_graph: SubGraph, state: State) -> Invoke:
     if node.callee.graph is not None:
-        return lambda values, context: sub_graph(node, values, context, state)
+        return lambda values, context: sub_graph(node, values, state)  # noqa: ARG005 - it has none
     if node.callee.module is None:
         return map_call(node, state)
     module = node.callee.module

@@ -1,4 +1,4 @@
-"""Keeping the map: how it begins, and how what the spokes found is committed to it. Only the engine does this."""
+"""Keeping the map: how it begins, and how what spokes found is committed to it. Only the engine does."""
 
 from __future__ import annotations
 

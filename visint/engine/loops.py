@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from visint.engine.executors import Run
 from visint.engine.convergence import relative_change
+from visint.engine.executors import Run
 from visint.engine.feedback import begin, carry
 from visint.engine.frame import Frame
 from visint.engine.state import State

@@ -9,8 +9,8 @@ from os import PathLike
 from time import perf_counter
 from typing import Any
 
-from visint.engine.executors import Run, in_order, side_by_side
 from visint.engine.call import Call, read_as
+from visint.engine.executors import Run, in_order, side_by_side
 from visint.engine.frame import Frame
 from visint.engine.inputs import accept, camera_of, size_of
 from visint.engine.levels import Levels
@@ -132,15 +132,13 @@ class _Ready:
         return Levels(item, body, restarts, self._camera)
 
     def _pool(self, depth: int) -> ThreadPoolExecutor:
-        """A pool for each depth of loops: a loop waits for its body, which must not wait for the loop's thread."""
+        """One pool a depth of loops: a loop waits for its body, which must not wait for the loop's thread."""
         while len(self._pools) <= depth:
             pool = ThreadPoolExecutor(self._options.threads, thread_name_prefix=f"visint-{len(self._pools)}")
             self._pools.append(self._stack.enter_context(pool))
         return self._pools[depth]
 
-    def _sub_graph(
-        self, node: Node, values: dict[str, Any], context: Context, state: State
-    ) -> Mapping[str, Any]:
+    def _sub_graph(self, node: Node, values: dict[str, Any], state: State) -> Mapping[str, Any]:
         """A sub-graph is a call: it gets inputs, gives outputs, and keeps nothing between calls."""
         graph = node.callee.graph
         assert graph is not None

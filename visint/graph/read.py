@@ -20,7 +20,7 @@ from visint.errors import GraphError, InputError, Problem, Where
 from visint.graph.complaints import complaints
 from visint.graph.spec import VERSION, GraphSpec
 
-__all__ = ["Places", "Source", "parse", "read_graph"]
+__all__ = ["Places", "Source", "parse", "parse_data", "parse_value", "read_graph"]
 
 LARGEST = 1 << 20
 DEEPEST = 24
@@ -80,6 +80,20 @@ def read_graph(path: Path) -> Source:
 def parse(text: str, file: str = "graph") -> Source:
     """The graph in ``text``, a whole graph file; ``file`` is what messages call it. Raises as `read_graph`."""
     data, places = _Composer(text, file).compose()
+    return _source(data, places)
+
+
+def parse_data(data: Any, file: str = "graph") -> Source:
+    """The graph in plain ``data``, such as a run record holds; raises as :func:`read_graph`, without lines."""
+    return _source(data, Places(file))
+
+
+def parse_value(text: str) -> Any:
+    """A single value as graph files spell it: ``5``, ``1e-4``, ``true``, ``[1, 2]``, ``word``."""
+    return _Composer(text, text[:60]).compose()[0]
+
+
+def _source(data: Any, places: Places) -> Source:
     if not isinstance(data, dict):
         wanted = "a graph file is a mapping with the keys visint, name, nodes, outputs"
         raise GraphError(Problem("VI105", f"{wanted}; this is {_kind(data)}", places.where()))

@@ -1,24 +1,28 @@
-"""Where a result comes from: everything that is needed to get the same bytes again, and nothing that changes."""
+"""Where a result comes from: all that is needed to get the same bytes again, and nothing that changes."""
 
 from __future__ import annotations
 
 import hashlib
+import math
 import platform
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from pydantic import BaseModel
+from pydantic_core import PydanticSerializationError
 
-import visint
 from visint.arrays import Array
-from visint.graph.graph import Graph
+from visint.graph.graph import Callee, Graph
 
 if TYPE_CHECKING:
     from visint.results.result import Result
 
-__all__ = ["LIBRARIES", "Source", "provenance"]
+__all__ = ["ABSENT", "LIBRARIES", "Source", "libraries", "modules", "parameters", "provenance"]
+
+ABSENT = "absent"
+"""Stands for the digest of an optional input that was not given."""
 
 LIBRARIES = ("numpy", "opencv-python-headless", "scipy", "numba", "networkx", "pydantic", "pluggy")
 """The libraries whose version may change a result."""
@@ -35,32 +39,41 @@ class Source(NamedTuple):
 def provenance(result: Result, sources: Mapping[str, Source]) -> dict[str, Any]:
     """The content of ``run.json`` but for the list of files: the same run gives the same text."""
     graph = result.graph
-    return {
-        "visint": visint.__version__,
+    told: dict[str, Any] = {
+        "visint": _version("visint"),
         "graph": graph.spec.plain(),
         "graph_hash": _sha(graph.to_yaml().encode()),
         "seed": result.seed,
         "inputs": {name: _input(value, sources.get(name)) for name, value in result.inputs.items()},
         "outputs": {name: _output(result, name) for name in result.outputs},
-        "modules": _modules(graph),
-        "parameters": {name: _params(node.params) for name, node in graph.nodes.items()},
-        "libraries": {"python": platform.python_version(), **{name: _version(name) for name in LIBRARIES}},
+        "modules": modules(graph),
+        "parameters": parameters(graph),
+        "libraries": libraries(),
         "stops": [stop._asdict() for stop in result.stops],
-        "trace": [_finite(turn._asdict()) for turn in result.trace],
+        "trace": [turn._asdict() for turn in result.trace],
         "warnings": [warned._asdict() for warned in result.warnings],
-        "measures": [_finite(measure._asdict()) for measure in result.record.measures],
+        "measures": [measure._asdict() for measure in result.record.measures],
     }
+    return {key: _spelled(one) for key, one in told.items()}
 
 
 def _input(value: Any, source: Source | None) -> dict[str, Any]:
     told: dict[str, Any] = {"sha256": _digest(value)}
-    if isinstance(value, BaseModel):
-        told["value"] = value.model_dump(mode="json")
-    elif isinstance(value, float | int | str | bool):
-        told["value"] = value
+    if isinstance(value, float | int | str | bool | BaseModel):
+        told |= _value(value)
     if source is not None:
         told |= {key: one for key, one in source._asdict().items() if one not in ((), "", None)}
     return told
+
+
+def _value(value: Any) -> dict[str, Any]:
+    """The value itself, if JSON can say it; a stranger's model may hold arrays."""
+    if not isinstance(value, BaseModel):
+        return {"value": value}
+    try:
+        return {"value": value.model_dump(mode="json")}
+    except PydanticSerializationError:
+        return {}
 
 
 def _output(result: Result, name: str) -> dict[str, Any]:
@@ -76,13 +89,16 @@ def _output(result: Result, name: str) -> dict[str, Any]:
 
 
 def _digest(value: Any) -> str:
+    if value is None:
+        return ABSENT
     if isinstance(value, tuple):
         return _sha("".join(_digest(one) for one in value).encode())
     if isinstance(value, np.ndarray):
         return array_digest(value)
     if isinstance(value, BaseModel):
-        return _sha(value.model_dump_json().encode())
-    return _sha(repr(value).encode())
+        return _sha("".join(f"{name}={_digest(one)};" for name, one in value).encode())
+    text = repr(value)
+    return _sha((type(value).__qualname__ if " at 0x" in text else text).encode())
 
 
 def array_digest(array: Array) -> str:
@@ -95,13 +111,31 @@ def _sha(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
-def _modules(graph: Graph) -> dict[str, dict[str, str]]:
-    callees = {node.callee.id: node.callee for node in graph.nodes.values() if node.callee.module}
+def modules(graph: Graph) -> dict[str, dict[str, str]]:
+    """Version and origin of every module that the graph calls, sub-graphs included, by its id."""
+    callees = {callee.id: callee for callee in _callees(graph) if callee.module}
     return {name: {"version": callees[name].version, "from": callees[name].origin} for name in sorted(callees)}
 
 
-def _params(params: Any) -> Any:
+def _callees(graph: Graph) -> Iterator[Callee]:
+    for node in graph.nodes.values():
+        yield node.callee
+        if node.callee.graph is not None:
+            yield from _callees(node.callee.graph)
+
+
+def parameters(graph: Graph) -> dict[str, dict[str, Any]]:
+    """The parameters of every node, defaults included, by node."""
+    return {name: _params(node.params) for name, node in graph.nodes.items()}
+
+
+def _params(params: Any) -> dict[str, Any]:
     return params.model_dump(mode="json") if isinstance(params, BaseModel) else dict(params)
+
+
+def libraries() -> dict[str, str]:
+    """Versions of Python and of :data:`LIBRARIES`."""
+    return {"python": platform.python_version(), **{name: _version(name) for name in LIBRARIES}}
 
 
 def _version(name: str) -> str:
@@ -111,9 +145,10 @@ def _version(name: str) -> str:
         return "not installed"
 
 
-def _finite(row: dict[str, Any]) -> dict[str, Any]:
-    """JSON has no NaN and no infinity: they are spelled out."""
-    return {
-        key: repr(value) if isinstance(value, float) and not np.isfinite(value) else value
-        for key, value in row.items()
-    }
+def _spelled(told: Any) -> Any:
+    """JSON has no NaN and no infinity: they are spelled out, wherever they stand."""
+    if isinstance(told, Mapping):
+        return {key: _spelled(one) for key, one in told.items()}
+    if isinstance(told, list | tuple):
+        return [_spelled(one) for one in told]
+    return repr(float(told)) if isinstance(told, float) and not math.isfinite(told) else told

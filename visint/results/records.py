@@ -22,7 +22,7 @@ class Turn(NamedTuple):
 
 
 class Stop(NamedTuple):
-    """Why a loop ended: all its ``times``, ``converged``, ``held``, or ``exhausted`` before its end condition."""
+    """Why a loop ended: all its ``times``, ``converged``, ``held``, or ``exhausted`` without ending."""
 
     loop: str
     level: int
@@ -78,7 +78,8 @@ class Record:
         """Sorts by loop and by node, keeping the order of time within each: threads may have mixed them."""
         loop_rank = {name: i for i, name in enumerate(loops)}
         rank = loop_rank | {name: i for i, name in enumerate(nodes)}
-        self.turns.sort(key=lambda turn: loop_rank[turn.loop])
-        self.stops.sort(key=lambda stop: loop_rank[stop.loop])
+        behind = len(loop_rank)  # loops of sub-graphs
+        self.turns.sort(key=lambda turn: loop_rank.get(turn.loop, behind))
+        self.stops.sort(key=lambda stop: loop_rank.get(stop.loop, behind))
         self.warnings.sort(key=lambda warned: rank.get(warned.node, -1))
         self.measures.sort(key=lambda measure: rank.get(measure.node, -1))
