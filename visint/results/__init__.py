@@ -1,4 +1,4 @@
-"""What a run gives: outputs with confidence and evidence, the record of how they came about, and files of it."""
+"""What a run gives: outputs with confidence and evidence, the record behind them, and files of it."""
 
 from visint.results.provenance import Source
 from visint.results.records import Measure, Record, Stop, Timing, Turn, Warned

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from visint.results.result import Result
 
 __all__ = [
+    "UNKNOWN",
     "of_confidence",
     "of_image",
     "of_mask",
@@ -22,9 +23,11 @@ __all__ = [
     "of_regions",
     "of_scalar",
     "span",
+    "turbo",
 ]
 
-_UNKNOWN = np.uint8(32)
+UNKNOWN = 128
+"""The grey of unknown pixels: no colour of the turbo map, and of the normals that of none."""
 
 
 def span(value: Array) -> tuple[float, float]:
@@ -32,19 +35,23 @@ def span(value: Array) -> tuple[float, float]:
     seen = value[known(value)]
     if not seen.size:
         return 0.0, 1.0
-    low, high = (float(q) for q in np.percentile(seen, (2, 98)))
-    return low, high if high > low else low + 1.0
+    low, high = (float(q) for q in np.percentile(seen.astype(np.float64), (2, 98)))
+    return low, high if high > low else low + max(1.0, abs(low))
 
 
 def of_scalar(value: Array, low: float, high: float) -> Array:
-    """A map (H, W) in the turbo colours from ``low`` (blue) to ``high`` (red); unknown is dark grey."""
+    """A map (H, W) in the turbo colours from ``low`` (blue) to ``high`` (red); unknown is grey."""
+    with np.errstate(invalid="ignore"):
+        level = np.clip((value.astype(np.float64) - low) / (high - low), 0, 1)
+    grey = np.nan_to_num(level * 255).astype(np.uint8)
+    return np.where(known(value)[..., None], turbo(grey), np.uint8(UNKNOWN))
+
+
+def turbo(level: Array) -> Array:
+    """The turbo colours, uint8 (H, W, 3), of levels uint8 (H, W): 0 is blue, 255 is red."""
     import cv2
 
-    with np.errstate(invalid="ignore"):
-        level = np.clip((value - low) / (high - low), 0, 1)
-    grey = np.nan_to_num(level * 255).astype(np.uint8)
-    rgb = cv2.cvtColor(cv2.applyColorMap(grey, cv2.COLORMAP_TURBO), cv2.COLOR_BGR2RGB)
-    return np.asarray(np.where(known(value)[..., None], rgb, _UNKNOWN), dtype=np.uint8)
+    return np.ascontiguousarray(cv2.applyColorMap(np.ascontiguousarray(level), cv2.COLORMAP_TURBO)[..., ::-1])
 
 
 def of_confidence(value: Array) -> Array:
@@ -57,7 +64,7 @@ def of_normals(value: Array) -> Array:
     """Normals (H, W, 3) in the usual colours: red to the right, green up, blue towards the camera."""
     flipped = value * np.array([1, -1, -1], np.float32)
     rgb = np.nan_to_num((flipped + 1) * 127.5).astype(np.uint8)
-    return np.where(known(value)[..., None], rgb, _UNKNOWN).astype(np.uint8)
+    return np.where(known(value)[..., None], rgb, np.uint8(UNKNOWN))
 
 
 def of_regions(value: Array) -> Array:

@@ -15,7 +15,7 @@ from visint.graph.graph import Graph
 from visint.names import did_you_mean
 from visint.results.derive import derived
 from visint.results.provenance import Source
-from visint.results.records import Record, Stop, Turn, Warned
+from visint.results.records import Measure, Record, Stop, Turn, Warned
 
 __all__ = ["Result", "gather"]
 
@@ -91,6 +91,11 @@ class Result(Mapping[str, Any]):
     def warnings(self) -> list[Warned]:
         """What modules and the engine had to say."""
         return self.record.warnings
+
+    @property
+    def measures(self) -> list[Measure]:
+        """The numbers that modules recorded."""
+        return self.record.measures
 
     def save(
         self,

@@ -1,0 +1,131 @@
+"""Maps as figures: the picture, its legend, its range and how much of it is known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from visint.arrays import Array
+from visint.fields.evidence import known
+from visint.results import pictures
+from visint.results.report.embed import embedded
+from visint.results.report.legends import color_bar, grey_bar, key, normals_key
+from visint.results.report.markup import Markup, element
+from visint.results.report.numbers import count, number, percent, with_unit
+
+__all__ = ["Map", "figure", "is_map"]
+
+
+class Map(NamedTuple):
+    """A map to be shown: ``name`` and ``title`` for people, the field ``kind``, the array and its unit."""
+
+    name: str
+    title: str
+    kind: str
+    value: Array
+    unit: str = "1"
+
+
+class _View(NamedTuple):
+    picture: Array
+    legend: Markup | None
+    facts: str
+
+
+def is_map(value: Any) -> bool:
+    """Whether ``value`` is an array with a pixel to show: (H, W) or (H, W, C) of numbers or booleans."""
+    return (
+        isinstance(value, np.ndarray) and value.ndim in (2, 3) and value.size > 0 and value.dtype.kind in "biuf"
+    )
+
+
+def figure(shown: Map, side: int) -> Markup:
+    """The figure of a map, its picture at most ``side`` pixels long."""
+    view = _VIEWS.get(shown.kind, _by_type(shown.value))(shown)
+    height, width = shown.value.shape[:2]
+    alt = f"{shown.title}, {width} × {height} pixels: {view.facts}"
+    caption = element("figcaption", element("strong", shown.title), " ", element("span", view.facts))
+    return element("figure", embedded(view.picture, alt, side), view.legend, caption)
+
+
+def _by_type(value: Array) -> Callable[[Map], _View]:
+    """How an array of a kind that only a plugin knows is shown."""
+    if value.dtype.kind == "b":
+        return _mask
+    return _regions if value.dtype.kind in "iu" and value.ndim == 2 else _scalar
+
+
+def _scalar(shown: Map) -> _View:
+    value = _lengths(shown.value)
+    low, high = pictures.span(value)
+    legend = color_bar(low, high, shown.unit, shown.name)
+    hidden = key({"unknown": "unknown"}) if not known(value).all() else None
+    facts = f"{_range(value, shown.unit)}, {percent(_share(known(value)))} known"
+    both = legend if hidden is None else element("div", legend, hidden)
+    return _View(pictures.of_scalar(value, low, high), both, facts)
+
+
+def _lengths(value: Array) -> Array:
+    """A map of vectors by their length; one of numbers as it is."""
+    if value.ndim == 2:
+        return value
+    return np.asarray(np.linalg.norm(value.astype(np.float64), axis=-1))
+
+
+def _range(value: Array, unit: str) -> str:
+    seen = value[known(value)]
+    if not seen.size:
+        return "nothing is known"
+    low, high = float(seen.min()), float(seen.max())
+    if low == high:
+        return f"{with_unit(number(low), unit)} everywhere"
+    return with_unit(f"{number(low)} to {number(high)}", unit)
+
+
+def _share(where: Array) -> float:
+    return float(np.count_nonzero(where)) / where.size
+
+
+def _normals(shown: Map) -> _View:
+    seen = known(shown.value)
+    facts = f"{percent(_share(seen))} known"
+    return _View(pictures.of_normals(shown.value), normals_key(not seen.all()), facts)
+
+
+def _mask(shown: Map) -> _View:
+    flat = shown.value if shown.value.ndim == 2 else shown.value.any(axis=-1)
+    legend = key({"white": "set", "black": "not set"})
+    return _View(pictures.of_mask(flat), legend, f"{percent(_share(flat))} of the pixels")
+
+
+def _boundaries(shown: Map) -> _View:
+    return _mask(shown)._replace(legend=key({"white": "boundary"}))
+
+
+def _regions(shown: Map) -> _View:
+    labels = np.unique(shown.value)
+    facts = f"{count(int(np.count_nonzero(labels)), 'region')}, {percent(_share(shown.value != 0))} labelled"
+    return _View(pictures.of_regions(shown.value), key({"black": "boundary"}), facts)
+
+
+def _confidence(shown: Map) -> _View:
+    value = np.nan_to_num(shown.value)
+    facts = f"{_range(shown.value, '1')}, {number(float(value.mean(dtype=np.float64)))} on average"
+    return _View(pictures.of_confidence(shown.value), grey_bar(shown.name), facts)
+
+
+def _image(shown: Map) -> _View:
+    return _View(pictures.of_image(shown.value), None, _range(shown.value, "1"))
+
+
+_VIEWS: dict[str, Callable[[Map], _View]] = {
+    "Image": _image,
+    "Color": _image,
+    "Normals": _normals,
+    "Boundaries": _boundaries,
+    "Mask": _mask,
+    "Regions": _regions,
+    "Confidence": _confidence,
+}

@@ -1,0 +1,98 @@
+"""The page: its sections in order, in the template, small enough to be sent by mail."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from string import Template
+from typing import TYPE_CHECKING, NamedTuple
+
+import visint
+from visint import io
+from visint.results.report import course, fields, origin
+from visint.results.report.markup import Markup, element, joined
+from visint.results.report.numbers import count, seconds
+from visint.results.report.setting import Setting
+
+if TYPE_CHECKING:
+    from visint.results.result import Result
+
+__all__ = ["MOST_BYTES", "SECTIONS", "report"]
+
+MOST_BYTES = 3_000_000
+"""How large a report may be; pictures are reduced until it fits."""
+
+_SIDES = (1280, 960, 640, 400, 240)
+"""The longest side of a picture, from what is wanted to what will do."""
+
+
+class Section(NamedTuple):
+    """One section: its name in addresses, its heading, and what makes its content (None leaves it out)."""
+
+    name: str
+    title: str
+    content: Callable[[Setting], Markup | None]
+
+
+SECTIONS = (
+    Section("warnings", "Warnings", course.warnings),
+    Section("inputs", "Inputs", fields.inputs),
+    Section("outputs", "Outputs", fields.outputs),
+    Section("evidence", "Evidence", fields.evidence),
+    Section("convergence", "Convergence", course.convergence),
+    Section("timings", "Timings", course.timings),
+    Section("measures", "Measures", course.measures),
+    Section("graph", "Graph", origin.graph),
+    Section("versions", "Parameters and versions", origin.versions),
+)
+"""The sections in the order of the page."""
+
+
+def report(result: Result) -> str:
+    """The whole report of ``result`` as the text of an HTML file, at most :data:`MOST_BYTES` long.
+
+    Nothing in it asks the network for anything, and no script runs. Apart from the timings the same run
+    gives the same text. Pictures of more than 1280 pixels a side are reduced, and further where the whole
+    would be too large; the files beside the report have every pixel.
+    """
+    text = ""
+    for side in _SIDES:
+        text = _page(Setting(result, side))
+        if len(text.encode()) <= MOST_BYTES:
+            break
+    return text
+
+
+def _page(setting: Setting) -> str:
+    made = [(section, section.content(setting)) for section in SECTIONS]
+    filled = [(section, content) for section, content in made if content]
+    result = setting.result
+    return Template(io.resource_text(__package__, "report.html")).substitute(
+        style=io.resource_text(__package__, "report.css"),
+        title=joined([result.graph.name]),
+        about=element("p", result.graph.spec.about, class_="about") if result.graph.spec.about else "",
+        facts=_facts(result),
+        contents=joined(
+            element("li", element("a", section.title, href=f"#{section.name}")) for section, _ in filled
+        ),
+        sections=joined(_section(section, content) for section, content in filled),
+        version=joined([visint.__version__]),
+    )
+
+
+def _section(section: Section, content: Markup) -> Markup:
+    heading = element("h2", section.title, id=f"{section.name}-title")
+    return element("section", heading, content, id=section.name, aria_labelledby=f"{section.name}-title")
+
+
+def _facts(result: Result) -> Markup:
+    calls = sum(timing.calls for timing in result.record.timings())
+    facts = {
+        "time": seconds(result.seconds),
+        "nodes": f"{len(result.graph.nodes)}, called {count(calls, 'time')}",
+        "outputs": ", ".join(result.outputs),
+        "warnings": str(len(result.warnings)) if result.warnings else "none",
+        "seed": str(result.seed),
+    }
+    return element(
+        "dl", *(element("div", element("dt", name), element("dd", told)) for name, told in facts.items())
+    )
