@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from visint.errors import Where
 from visint.fields.kinds import KINDS, FieldKind
-from visint.graph.callees import find_callee, is_map
+from visint.graph.callees import find_callee, plugins_named, stored_fields
 from visint.graph.checks import RULES, loops_exist
 from visint.graph.draft import Draft
 from visint.graph.graph import INPUTS, MAP, Callee, Edge, Feedback, Graph, Loop, Node, Until
@@ -47,7 +47,7 @@ def bind(
     file
         The file it was read from.
     calling
-        Names of the graphs that are being bound around this one: a graph that calls itself is refused.
+        Names of the graphs being bound around this one, and its own: a graph that calls itself is refused.
 
     Raises
     ------
@@ -56,16 +56,17 @@ def bind(
     PluginError
         Where a plugin that the graph uses is broken.
     """
-    draft = Draft(spec, catalog, places or Places(str(file or spec.name)))
+    calling = calling or (spec.name,)
+    draft = Draft(spec, catalog, places or Places(str(file or spec.name)), calling)
     _check_names(draft)
     _check_inputs(draft)
     draft.raise_problems()
-    _find_callees(draft, calling)
+    draft.fields = stored_fields(catalog, plugins_named(spec))
+    _find_callees(draft)
     if spec.hub is not None:
-        draft.raise_problems()
         expand(draft)
         draft.raise_problems()
-        _find_callees(draft, calling)
+        _find_callees(draft)
     graph = _wire(draft, spec, file)
     draft.raise_problems()
     draft.problems.extend(loops_exist(graph, draft))  # the other rules walk along the loops
@@ -106,23 +107,12 @@ def _check_inputs(draft: Draft) -> None:
             )
 
 
-def _find_callees(draft: Draft, calling: tuple[str, ...]) -> None:
-    # Modules first: which fields the map has depends on the plugins that are loaded by then.
-    nodes = sorted(draft.spec.nodes.items(), key=lambda item: is_map(item[1]))
-    for name, node in nodes:
-        if name in draft.callees:
-            continue
-        where = draft.where("nodes", name, "uses")
-        callee = find_callee(draft, node.uses, where, lambda called: _called(draft, called, calling))
-        if callee is not None:
-            draft.callees[name] = callee
-
-
-def _called(draft: Draft, name: str, calling: tuple[str, ...]) -> Graph | None:
-    from visint.graph.load import load_named
-
-    stack = (*calling, draft.spec.name)
-    return None if name in stack else load_named(name, draft.catalog, stack)
+def _find_callees(draft: Draft) -> None:
+    for name, node in draft.spec.nodes.items():
+        if name not in draft.callees:
+            callee = find_callee(draft, node.uses, draft.where("nodes", name, "uses"))
+            if callee is not None:
+                draft.callees[name] = callee
 
 
 def _wire(draft: Draft, spec: GraphSpec, file: Path | None) -> Graph:

@@ -2,39 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import replace
 
 from visint.arrays import ArraySpec
 from visint.errors import PluginError, Where
 from visint.fields.kinds import KINDS, FieldKind
 from visint.graph.draft import Draft
-from visint.graph.graph import MAP, Callee, Graph
-from visint.graph.spec import NodeSpec
+from visint.graph.graph import Callee, Edge, Graph
+from visint.graph.spec import GraphSpec, InputSpec
 from visint.module import PortSpec
 from visint.names import ModuleId, did_you_mean, is_name, listed
 from visint.registry import Catalog
 
-__all__ = ["BEGIN", "COMMIT", "find_callee", "map_callee", "map_ports", "stored_fields"]
+__all__ = ["BEGIN", "COMMIT", "find_callee", "map_ports", "plugins_named", "stored_fields"]
 
 BEGIN, COMMIT = "map.begin", "map.commit"
 """The engine's own nodes: the map at the start of a sweep, and the map with new fields."""
 
-CallGraph = Callable[[str], Graph | None]
 
-
-def find_callee(draft: Draft, uses: str, where: Where, call_graph: CallGraph) -> Callee | None:
+def find_callee(draft: Draft, uses: str, where: Where) -> Callee | None:
     """What ``uses`` names; None, with a problem noted, if it names nothing."""
     if uses in (BEGIN, COMMIT):
-        return map_callee(uses, draft.catalog)
+        return _map_callee(draft, uses)
     prefix, colon, name = uses.partition(":")
     if colon:
-        return _graph_callee(draft, prefix, name, where, call_graph)
+        return _graph_callee(draft, prefix, name, where)
     module = ModuleId.parse(uses)
     if module is None:
         found = f"{uses!r} is no module; one is written plugin.module"
-        draft.say("VI201", found, where, "plugins: " + listed(draft.catalog.plugin_names))
+        near = did_you_mean(uses, _known_modules(draft))
+        choices = "plugins: " + listed(draft.catalog.plugin_names)
+        draft.say("VI201", found, where, choices, f"uses: {near or 'plugin.module'}")
         return None
     return _module_callee(draft, module, where)
+
+
+def _known_modules(draft: Draft) -> Iterator[str]:
+    """Every module of the plugins that are loaded, by id and (for who forgot the plugin) by its own name."""
+    for plugin in draft.catalog.loaded:
+        for name in plugin.modules:
+            yield f"{plugin.name}.{name}"
 
 
 def _module_callee(draft: Draft, module: ModuleId, where: Where) -> Callee | None:
@@ -47,7 +56,7 @@ def _module_callee(draft: Draft, module: ModuleId, where: Where) -> Callee | Non
     try:
         plugin = draft.catalog.plugin(module.plugin)
     except PluginError as error:
-        draft.problems.extend(error.problems)
+        draft.problems.extend(replace(problem, where=where) for problem in error.problems)
         return None
     found = plugin.modules.get(module.name)
     if found is None:
@@ -59,25 +68,43 @@ def _module_callee(draft: Draft, module: ModuleId, where: Where) -> Callee | Non
     return Callee(str(module), found.Inputs.specs, found.Outputs.specs, module=found, origin=plugin.origin)
 
 
-def _graph_callee(draft: Draft, prefix: str, name: str, where: Where, call_graph: CallGraph) -> Callee | None:
+def _graph_callee(draft: Draft, prefix: str, name: str, where: Where) -> Callee | None:
+    from visint.graph.load import load_named
+
     known = draft.catalog.graphs()
     if prefix != "graph" or not is_name(name) or name not in known:
         near = did_you_mean(name, known)
-        write = f"uses: graph:{near}" if near else ""
-        found = f"{prefix}:{name} names no installed graph"
-        draft.say("VI201", found, where, "graphs: " + listed(known), write)
+        write = f"uses: graph:{near or next(iter(known), 'name')}"
+        draft.say(
+            "VI201", f"{prefix}:{name} names no installed graph", where, "graphs: " + listed(known), write
+        )
         return None
-    graph = call_graph(name)
-    if graph is None:
-        found = f"the graph {name!r} calls itself, through {draft.spec.name!r}"
-        draft.say("VI218", found, where)
+    if name in draft.calling:
+        circle = " → ".join([*draft.calling[draft.calling.index(name) :], name])
+        found = f"the graph {name!r} calls itself: {circle}"
+        others = "other graphs: " + listed(one for one in known if one not in draft.calling)
+        draft.say(
+            "VI218", found, where, others, "uses: plugin.module   (or a graph that does not call this one)"
+        )
         return None
+    graph = load_named(name, draft.catalog, draft.calling)
     inputs = {
         port: PortSpec(port, spec.kind, _array(draft.catalog, spec.kind), spec.optional, spec.many)
         for port, spec in graph.inputs.items()
     }
-    outputs = {port: PortSpec(port, edge.kind.name, edge.kind.array) for port, edge in graph.outputs.items()}
+    outputs = {port: _given(graph, port, edge) for port, edge in graph.outputs.items()}
     return Callee(f"graph:{name}", inputs, outputs, graph=graph)
+
+
+def _given(graph: Graph, name: str, edge: Edge) -> PortSpec:
+    """An output of a graph as a port: what its source gives, or None where that does not run at full size."""
+    node = graph.nodes.get(edge.source.node)
+    if node is None:
+        spec = graph.inputs[edge.source.port]
+        return PortSpec(name, spec.kind, edge.kind.array, spec.optional, spec.many)
+    absent = node.levels is not None and 0 not in node.levels
+    port = node.callee.outputs[edge.source.port]
+    return replace(port, name=name, optional=port.optional or absent)
 
 
 def _array(catalog: Catalog, kind: str) -> ArraySpec | None:
@@ -85,55 +112,76 @@ def _array(catalog: Catalog, kind: str) -> ArraySpec | None:
     return found.array if found else None
 
 
-def stored_fields(catalog: Catalog) -> Mapping[str, FieldKind]:
-    """The fields the map stores: depth, boundaries, and those that kinds of the loaded plugins constrain."""
+def stored_fields(catalog: Catalog, plugins: Iterable[str] = ()) -> Mapping[str, FieldKind]:
+    """The fields the map stores: depth, boundaries, and those that kinds of ``plugins`` constrain.
+
+    ``plugins`` are the ones that a graph names, whatever else is loaded: a graph means the same everywhere.
+    A broken one is passed over here, for its node tells of it.
+    """
     fields = {"depth": KINDS["Depth"], "boundaries": KINDS["Boundaries"]}
-    for plugin in catalog.loaded:
-        for kind in plugin.fields.values():
-            if kind.constrains:
-                fields.setdefault(kind.constrains, kind)
+    for name in sorted(set(plugins) & {*catalog.plugin_names}):
+        with suppress(PluginError):
+            for kind in catalog.plugin(name).fields.values():
+                if kind.constrains:
+                    fields.setdefault(kind.constrains, kind)
     return fields
+
+
+def plugins_named(spec: GraphSpec) -> set[str]:
+    """The plugins that a graph names: those of its modules, of its policy and of its inputs' kinds."""
+    uses = [node.uses for node in spec.nodes.values()]
+    uses += [InputSpec.parse(text).kind for text in spec.inputs.values()]
+    if spec.hub is not None:
+        spokes = spec.hub.spokes.values()
+        steps = [
+            *(step for one in spokes for step in (one.cohere, one.reconcile)),
+            *spec.hub.reconcile.values(),
+        ]
+        uses += [spec.hub.uses or "", *(one.uses for one in spokes), *(step.uses or "" for step in steps)]
+    return {one.partition(".")[0] for one in uses}
 
 
 _DERIVED = {"disparity": "Disparity", "normals": "Normals", "slopes": "Slopes", "regions": "Regions"}
 
 
-def map_ports(catalog: Catalog) -> dict[str, PortSpec]:
+def map_ports(draft: Draft) -> dict[str, PortSpec]:
     """What can be read from the map: stored and derived fields, and the confidence of the stored ones.
 
-    Every one may be None (a field that starts as ``none``) except what follows from depth.
+    Every one may be None (a field that starts as ``none``), except what follows from depth where that has
+    a start.
     """
+    empty = _starts_without_depth(draft.spec)
     ports = {"map": PortSpec("map", "Map")}
-    for field, kind in stored_fields(catalog).items():
-        ports[field] = PortSpec(field, kind.name, kind.array, optional=field != "depth")
+    for field, kind in draft.fields.items():
+        optional = field != "depth" or empty
+        ports[field] = PortSpec(field, kind.name, kind.array, optional)
         confidence = f"{field}_confidence"
-        array = KINDS["Confidence"].array
-        ports[confidence] = PortSpec(confidence, "Confidence", array, optional=field != "depth")
+        ports[confidence] = PortSpec(confidence, "Confidence", KINDS["Confidence"].array, optional)
     for field, name in _DERIVED.items():
-        ports[field] = PortSpec(field, name, KINDS[name].array, optional=field == "regions")
+        ports[field] = PortSpec(field, name, KINDS[name].array, optional=field == "regions" or empty)
     return ports
 
 
-def map_callee(uses: str, catalog: Catalog) -> Callee:
+def _starts_without_depth(spec: GraphSpec) -> bool:
+    if spec.hub is not None:
+        return spec.hub.start.get("depth", "plane") is None
+    return any(node.uses == BEGIN and node.with_.get("depth") == "none" for node in spec.nodes.values())
+
+
+def _map_callee(draft: Draft, uses: str) -> Callee:
     """``map.begin`` or ``map.commit`` as a node sees it; every stored field is an optional input.
 
     A commit takes a field as it is (``depth``, with ``depth_confidence``) or straight from evidence
     (``depth_evidence``), which then replaces the map wherever it speaks.
     """
-    outputs = map_ports(catalog)
+    outputs = map_ports(draft)
     inputs = {"map": PortSpec("map", "Map", optional=uses == BEGIN)}
     if uses == BEGIN:
         inputs["camera"] = PortSpec("camera", "Camera", optional=True)
-    for field in stored_fields(catalog):
+    for field in draft.fields:
         for port in (field, f"{field}_confidence"):
-            spec = outputs[port]
-            inputs[port] = PortSpec(port, spec.kind, spec.array, optional=True)
+            inputs[port] = replace(outputs[port], optional=True)
         if uses == COMMIT:
             given = f"{field}_evidence"
             inputs[given] = PortSpec(given, "", KINDS["Depth"].array, optional=True, evidence=True)
     return Callee(uses, inputs, outputs)
-
-
-def is_map(spec: NodeSpec) -> bool:
-    """Whether a node keeps the map."""
-    return spec.uses.partition(".")[0] == MAP

@@ -20,7 +20,9 @@ Rule = Callable[[Graph, Draft], Iterator[Problem]]
 
 def loops_exist(graph: Graph, draft: Draft) -> Iterator[Problem]:
     """Every loop that is named is declared, and loops lie inside each other without a circle."""
-    named: list[tuple[tuple[str, ...], str | None]] = [(("nodes", name, "loop"), node.loop) for name, node in graph.nodes.items()]
+    named: list[tuple[tuple[str, ...], str | None]] = [
+        (("nodes", name, "loop"), node.loop) for name, node in graph.nodes.items()
+    ]
     named += [(("loops", name, "inside"), loop.spec.inside) for name, loop in graph.loops.items()]
     if graph.spec.hub:
         named.append((("hub", "loop"), graph.spec.hub.loop))
@@ -124,7 +126,7 @@ def _wires(graph: Graph) -> nx.DiGraph:
 
 
 def no_path_leaves_a_loop_and_returns(graph: Graph, draft: Draft) -> Iterator[Problem]:
-    """A loop is one step of what is around it: no path of in-edges leaves it and comes back in the same turn."""
+    """A loop is one step of what is around it: no path of in-edges leaves it and comes back in one turn."""
     wires = _wires(graph)
     if not nx.is_directed_acyclic_graph(wires):
         return
@@ -153,7 +155,7 @@ def restarts_are_outer_loops(graph: Graph, draft: Draft) -> Iterator[Problem]:
 
 
 def starts_fit(graph: Graph, draft: Draft) -> Iterator[Problem]:
-    """A feedback edge's start fits its port: a plane for depth or disparity, a number for what holds numbers."""
+    """A feedback edge's start fits its port: a plane for depth or disparity, a number for what holds them."""
     for name, node in graph.nodes.items():
         for port, feedback in node.feedback.items():
             said = _start_fault(graph, node.callee.inputs[port], feedback.start, feedback.loop)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from visint.errors import GraphError, Problem, Where
+from visint.errors import GraphError, PluginError, Problem, Where
+from visint.fields.kinds import FieldKind
 from visint.graph.graph import INPUTS, Callee
 from visint.graph.read import Places
 from visint.graph.spec import GraphSpec, InputSpec
@@ -22,12 +23,15 @@ Origin = tuple[str, ...]
 class Draft:
     """A graph on its way from spec to bound graph.
 
+    ``calling`` are the graphs being bound around this one, itself last; ``fields`` what its map stores.
     ``origins`` says for a node that a hub was expanded into where in the file it comes from.
     """
 
     spec: GraphSpec
     catalog: Catalog
     places: Places
+    calling: tuple[str, ...] = ()
+    fields: Mapping[str, FieldKind] = field(default_factory=dict)
     origins: Mapping[str, Origin] = field(default_factory=dict)
     callees: dict[str, Callee] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
@@ -35,7 +39,10 @@ class Draft:
     def where(self, *path: str | int, key: bool = False) -> Where:
         """The place of a path of keys; a path into an expanded node leads to what it was expanded from."""
         if len(path) > 1 and path[0] == "nodes" and path[1] in self.origins:
-            path = (*self.origins[str(path[1])], *path[2:])
+            origin, rest = self.origins[str(path[1])], path[2:]
+            if origin == ("hub",) and rest[:1] in (("in",), ("with",)):  # what the map begins with
+                rest = ("start", *rest[1:])
+            path = (*origin, *rest)
         return self.places.where(*path, key=key)
 
     def say(self, code: str, found: str, where: Where, choices: str = "", write: str = "") -> None:
@@ -47,7 +54,8 @@ class Draft:
         if self.problems:
             distinct = {(str(problem)): problem for problem in self.problems}
             in_order = sorted(distinct.values(), key=lambda p: (p.where.line, p.where.column))
-            raise GraphError(in_order)
+            broken = all(problem.fault == "plugin" for problem in in_order)
+            raise (PluginError if broken else GraphError)(in_order)
 
     def input_port(self, name: str) -> PortSpec:
         """A graph input, as the port it is to the nodes it feeds."""
@@ -56,7 +64,7 @@ class Draft:
         return PortSpec(name, declared.kind, kind.array if kind else None, declared.optional, declared.many)
 
     def source(self, ref: str, where: Where) -> tuple[PortRef, PortSpec] | None:
-        """The reference spelled by ``ref`` and the port it means; None, with a problem noted, if it means none."""
+        """The reference spelled by ``ref`` and the port it means; None, with a problem noted, if none."""
         parsed = PortRef.parse(ref)
         if parsed is None:
             self.say("VI202", f"{ref!r} is no reference; one is written node.port", where, self._nodes())

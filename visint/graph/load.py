@@ -49,7 +49,7 @@ def load_named(name: str, catalog: Catalog, calling: tuple[str, ...] = ()) -> Gr
         raise GraphError(
             Problem("VI108", f"no graph is named {name!r}", choices="graphs: " + listed(known), write=write)
         )
-    return _load_file(known[name], catalog, calling)
+    return _load_file(known[name], catalog, (*calling, name))
 
 
 def _load_file(path: Path, catalog: Catalog, calling: tuple[str, ...] = ()) -> Graph:

@@ -124,7 +124,7 @@ class Layout:
         return slot
 
     def _fitted(self, slot: int, edge: Edge, loop: str | None, source_loop: str | None) -> int:
-        """``slot`` itself, or one fitted to the level where ``loop`` lies in a pyramid and the source does not."""
+        """``slot`` itself, or one fitted to the level if ``loop`` lies in a pyramid and the source does not."""
         pyramid = self.graph.pyramid_around(loop)
         if pyramid is None or pyramid in self.graph.loops_around(source_loop):
             return slot

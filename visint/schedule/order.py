@@ -55,8 +55,8 @@ def _key(graph: Graph, node: Node, keys: Mapping[str, int], known: Mapping[str, 
         repr([graph.loops[loop].spec for loop in graph.loops_around(node.loop)]),
     ]
     for port, edges in sorted(node.ins.items()):
-        for edge in (edges,) if isinstance(edges, Edge) else edges:
-            text.append(f"{port}<{_source(edge, keys)}")
+        sources = (edges,) if isinstance(edges, Edge) else edges
+        text.extend(f"{port}<{_source(edge, keys)}" for edge in sources)
     for port, feedback in sorted(node.feedback.items()):
         text.append(f"{port}@{_fed_back(feedback, known, keys)}")
     return int.from_bytes(blake2b("\n".join(text).encode(), digest_size=8).digest(), "big")

@@ -29,7 +29,7 @@ class Out(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One call of a node: the slots of its ports, those of its outputs, and its place in the graph as a number."""
+    """One call of a node: the slots of its ports and outputs, and its place in the graph as a number."""
 
     node: Node
     ins: tuple[tuple[str, Slot | tuple[Slot, ...]], ...]
