@@ -158,6 +158,11 @@ class TestSamples:
         assert not np.array_equal(inputs.image, other.image)
         assert not np.array_equal(inputs.image, inputs.source)
 
+    def test_lists_are_as_long_as_asked(self):
+        """A module that wants a pair is given one."""
+        assert len(sample_inputs(toys.Stack.Inputs, (5, 7), listed=2).images) == 2
+        assert len(sample_inputs(toys.Stack.Inputs, (5, 7)).images) == 3
+
     def test_contents(self):
         ports = toys.Blend.Inputs
         assert sample_inputs(ports, (9, 9), "grey").depth.std() == 0

@@ -50,6 +50,8 @@ class ModuleContract:
     """(rows, columns) of the inputs."""
     smallest: ClassVar[Size] = (1, 1)
     """The smallest (rows, columns) that the module promises to take; raise it only if its docstring does."""
+    listed: ClassVar[int] = 3
+    """How many values a list on a port holds: 2 for a module that wants a pair."""
     instant: ClassVar[bool] = False
     """True for a module that calls no library long enough to be worth interrupting."""
 
@@ -62,7 +64,7 @@ class ModuleContract:
 
         Every optional port should be filled. Called again it must return equal inputs.
         """
-        return samples.sample_inputs(self.module.Inputs, size, content, seed)
+        return samples.sample_inputs(self.module.Inputs, size, content, seed, listed=self.listed)
 
     def test_0_it_declares_itself(self) -> None:
         """A name, a line on what it recovers, and three models."""

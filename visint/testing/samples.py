@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Callable, Mapping
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -28,10 +28,11 @@ _RANGES: Mapping[str, tuple[float, float]] = {
     "Slopes": (-0.5, 0.5),
     "Sigma": (0.1, 2.0),
 }
-_LISTED = 3
 
 
-def sample_inputs(ports: type[Ports], size: Size, content: Content = "noise", seed: int = 0) -> Any:
+def sample_inputs(
+    ports: type[Ports], size: Size, content: Content = "noise", seed: int = 0, *, listed: int = 3
+) -> Any:
     """Inputs (or outputs) of a module with every port filled.
 
     Parameters
@@ -39,40 +40,52 @@ def sample_inputs(ports: type[Ports], size: Size, content: Content = "noise", se
     ports
         ``SomeModule.Inputs``.
     size
-        (rows, columns): lengths of the dims H and W. Any other named dim has the length 3.
+        (rows, columns): lengths of the dims H and W. Any other named dim has the length ``listed``.
     content
         What arrays hold; labels and flags are noise in every case but ``grey``.
     seed
         Of the noise. A port's noise depends on its name too.
+    listed
+        How many values a list holds.
 
     Raises
     ------
     TypeError
         For a port of a class that is not visint's own.
     """
-    return ports(**{name: _port(spec, size, content, seed) for name, spec in ports.specs.items()})
+    made = _Maker(size, content, seed, listed)
+    return ports(**{name: made.port(spec) for name, spec in ports.specs.items()})
 
 
-def _port(spec: PortSpec, size: Size, content: Content, seed: int) -> Any:
-    key = zlib.crc32(spec.name.encode())
-    if spec.many:
-        return tuple(_one(spec, size, content, (seed, key, i)) for i in range(_LISTED))
-    return _one(spec, size, content, (seed, key))
+class _Maker(NamedTuple):
+    """What all samples of one call have in common."""
+
+    size: Size
+    content: Content
+    seed: int
+    listed: int
+
+    def port(self, spec: PortSpec) -> Any:
+        key = (self.seed, zlib.crc32(spec.name.encode()))
+        if spec.many:
+            return tuple(self.one(spec, (*key, i)) for i in range(self.listed))
+        return self.one(spec, key)
+
+    def one(self, spec: PortSpec, key: tuple[int, ...]) -> Any:
+        if spec.array is not None:
+            value = sample_array(spec.array, self.size, self.content, np.random.default_rng(key), self.listed)
+            return _evidence(spec.kind, value, np.random.default_rng((*key, 1))) if spec.evidence else value
+        if spec.kind not in _PLAIN:
+            raise TypeError(f"no sample of {spec.kind} for port {spec.name!r}; write make_inputs yourself")
+        return _PLAIN[spec.kind](self.size)
 
 
-def _one(spec: PortSpec, size: Size, content: Content, seed: tuple[int, ...]) -> Any:
-    if spec.array is not None:
-        value = sample_array(spec.array, size, content, np.random.default_rng(seed))
-        return _evidence(spec.kind, value, np.random.default_rng((*seed, 1))) if spec.evidence else value
-    if spec.kind not in _PLAIN:
-        raise TypeError(f"no sample of {spec.kind} for port {spec.name!r}; write make_inputs yourself")
-    return _PLAIN[spec.kind](size)
-
-
-def sample_array(spec: ArraySpec, size: Size, content: Content, rng: np.random.Generator) -> Array:
-    """An array of ``spec``; a writable base lies behind what a port makes of it, as in the engine."""
+def sample_array(
+    spec: ArraySpec, size: Size, content: Content, rng: np.random.Generator, other: int = 3
+) -> Array:
+    """An array of ``spec``; dims that are neither H nor W nor fixed have the length ``other``."""
     lengths = {"H": size[0], "W": size[1]}
-    shape = tuple(d if isinstance(d, int) else lengths.get(d, 3) for d in spec.dims)
+    shape = tuple(d if isinstance(d, int) else lengths.get(d, other) for d in spec.dims)
     dtype = np.dtype(spec.dtype)
     if dtype.kind == "b":
         return rng.random(shape) < (0.0 if content == "grey" else 0.2)
