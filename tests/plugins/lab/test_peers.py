@@ -1,0 +1,57 @@
+"""Peers run in processes of their own; the script is also run here with what this environment has."""
+
+import numpy as np
+import pytest
+
+import visint
+from visint_lab.datasets.pair import Pair
+from visint_lab.metrics import disparity_scores, filled_from_rows
+from visint_lab.peers import available, child, run_peer
+from visint_lab.peers.running import stored
+from visint_lab.render.rendering import render
+from visint_lab.scenes import scene
+
+
+def installed():
+    try:
+        return bool(available())
+    except visint.UsageError:
+        return False
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return Pair.of(render(scene("demo", 160), samples=2))
+
+
+@pytest.mark.parametrize("name", ["StereoBM", "SGBM 3WAY", "SGBM HH"])
+def test_a_matcher_finds_the_demo_scene(pair, name):
+    """With the vendor's parameters nine in ten visible pixels are within 2 px."""
+    images = stored(pair.left), stored(pair.right)
+    disparity, cpu, _ = child.matched(name, images, *pair.camera.disparity_range)
+    scores = disparity_scores(filled_from_rows(disparity), pair.disparity, pair.visible)
+    assert scores["bad2"] < 0.1
+    assert 0 < cpu < 5
+
+
+def test_padding_saves_the_left_border(pair):
+    """Columns that the search range would cut off are matched all the same."""
+    images = stored(pair.left), stored(pair.right)
+    disparity, _, _ = child.matched("SGBM HH", images, *pair.camera.disparity_range)
+    low = int(np.nanmin(pair.disparity))
+    assert np.isfinite(disparity[:, low + 2 : low + 20]).mean() > 0.4
+
+
+def test_an_unknown_peer_is_refused(pair):
+    """The error lists the peers there are."""
+    with pytest.raises(visint.UsageError, match="Pandora"):
+        run_peer("MC-CNN", pair)
+
+
+@pytest.mark.skipif(not installed(), reason="make peers has not been run")
+def test_a_peer_runs_in_its_own_process_and_says_what_it_cost(pair):
+    """The disparity comes back with CPU time and peak memory."""
+    run = run_peer("SGBM 3WAY", pair)
+    assert run.disparity.shape == pair.left.shape
+    assert 0 < run.cost.cpu < 10
+    assert 20 < run.cost.peak_mb < 500
