@@ -51,7 +51,8 @@ def files_of(result: Result) -> Files:
         elif isinstance(value, np.ndarray):
             yield f"{name}.npz", io.encode_npz({name: value})
     for name, value in result.confidence.items():
-        yield f"{name}_confidence.pfm", io.encode_pfm(value)
+        if f"{name}_confidence" not in result.outputs:  # the graph may give it as an output of its own
+            yield f"{name}_confidence.pfm", io.encode_pfm(value)
     if result.evidence:
         yield "evidence.npz", io.encode_npz(dict(_evidence(result.evidence)))
     yield from _points(result)
@@ -102,12 +103,15 @@ def _points(result: Result) -> Files:
     """The known points of the first depth map, with their colour and normals."""
     camera = result.camera
     depth = next((value for name, value in result.outputs.items() if result.kinds[name] == "Depth"), None)
-    if camera is None or depth is None or not known(depth).any():
+    if camera is None or depth is None or depth.shape != camera.size or not known(depth).any():
         return
     normals = next((value for name, value in result.outputs.items() if result.kinds[name] == "Normals"), None)
     points = geometry.back_project(depth, camera)
-    picture = pictures.of_reference(result)
-    yield "points.ply", io.encode_ply(points, normals=normals, colors=picture, unit=camera.unit)
+    beside = {"normals": normals, "colors": pictures.of_reference(result)}
+    fitting = {
+        name: one if one is not None and one.shape == points.shape else None for name, one in beside.items()
+    }
+    yield "points.ply", io.encode_ply(points, unit=camera.unit, **fitting)
 
 
 def _profile(result: Result) -> dict[str, Any]:

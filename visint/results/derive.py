@@ -20,7 +20,7 @@ def derived(values: Mapping[str, tuple[str, Any]], camera: Camera | None) -> dic
     values
         Output name → (kind, value); values are arrays or evidence.
     camera
-        The camera; without one nothing follows.
+        The camera of these maps; without one, or from maps of another size, nothing follows.
 
     Returns
     -------
@@ -30,6 +30,8 @@ def derived(values: Mapping[str, tuple[str, Any]], camera: Camera | None) -> dic
         return {}
     origin = _origin(values)
     if origin is None:
+        return {}
+    if _plain(values[origin][1]).shape != camera.size:
         return {}
     depth, disparity = _both(*values[origin], camera)
     found = {

@@ -125,7 +125,7 @@ class Result(Mapping[str, Any]):
         return save(self, folder, force=force, sources=sources or {})
 
 
-def gather(
+def gather(  # noqa: PLR0913 - all that a run leaves, put together in this one place
     graph: Graph,
     inputs: Mapping[str, Any],
     outputs: Mapping[str, Any],
@@ -144,7 +144,7 @@ def gather(
     for name, snapshot in maps.items():
         field_name = _field_of(graph, name)
         sure = snapshot.confidence.get(field_name) if snapshot else None
-        if sure is not None:
+        if sure is not None and graph.outputs[name].kind.name != "Confidence":
             confidence[name] = sure
         if snapshot and field_name in snapshot.writers:
             writers[name] = snapshot.writers[field_name]

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from visint.results.records import Stop, Timing, Turn, Warned
 from visint.results.report.chart import Line, log_chart
 from visint.results.report.markup import Markup, element, joined, table
-from visint.results.report.numbers import count, number, percent, ranges, seconds
+from visint.results.report.numbers import count, number, ranges, seconds
 from visint.results.report.setting import Setting
 
 __all__ = ["convergence", "measures", "timings", "warnings"]
@@ -37,6 +37,8 @@ def _grouped(stops: Sequence[Stop]) -> dict[tuple[str, int, str], list[Stop]]:
 
 def _why(setting: Setting, stop: Stop) -> str:
     loop = setting.result.graph.loops.get(stop.loop)
+    if loop and loop.pyramid:
+        return "every level was done"
     until = loop.until.spec if loop and loop.until else None
     watched = until.change_of if until and until.change_of else "what it watches"
     bound = number(until.below) if until and until.below else "its bound"
@@ -64,13 +66,13 @@ def _charts(setting: Setting) -> Iterator[Markup]:
 
 
 def _by_level(turns: Sequence[Turn]) -> dict[str, list[Line]]:
-    """Lines by level, the coarsest first as they ran; a loop that ran again starts a new line."""
+    """Lines by level, the coarsest first as they ran; turns from 1, and a loop that ran again a new line."""
     lines: dict[str, list[list[tuple[int, float]]]] = defaultdict(list)
     for turn in turns:
         of_level = lines[f"level {turn.level}"]
-        if not of_level or of_level[-1][-1][0] >= turn.turn:
+        if not of_level or of_level[-1][-1][0] > turn.turn:
             of_level.append([])
-        of_level[-1].append((turn.turn, turn.change))
+        of_level[-1].append((turn.turn + 1, turn.change))
     return {name: list(each) for name, each in lines.items()}
 
 

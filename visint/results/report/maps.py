@@ -44,8 +44,7 @@ def is_map(value: Any) -> bool:
 def figure(shown: Map, side: int) -> Markup:
     """The figure of a map, its picture at most ``side`` pixels long."""
     view = _VIEWS.get(shown.kind, _by_type(shown.value))(shown)
-    height, width = shown.value.shape[:2]
-    alt = f"{shown.title}, {width} × {height} pixels: {view.facts}"
+    alt = f"{shown.kind} {shown.title}: {view.facts}"
     caption = element("figcaption", element("strong", shown.title), " ", element("span", view.facts))
     return element("figure", embedded(view.picture, alt, side), view.legend, caption)
 
@@ -60,11 +59,16 @@ def _by_type(value: Array) -> Callable[[Map], _View]:
 def _scalar(shown: Map) -> _View:
     value = _lengths(shown.value)
     low, high = pictures.span(value)
-    legend = color_bar(low, high, shown.unit, shown.name)
-    hidden = key({"unknown": "unknown"}) if not known(value).all() else None
-    facts = f"{_range(value, shown.unit)}, {percent(_share(known(value)))} known"
-    both = legend if hidden is None else element("div", legend, hidden)
-    return _View(pictures.of_scalar(value, low, high), both, facts)
+    seen = known(value)
+    facts = _range(value, shown.unit)
+    varies = np.unique(value[seen]).size > 1
+    legend = element(
+        "div",
+        color_bar(low, high, shown.unit, shown.name) if varies else None,
+        None if seen.all() else key({"unknown": "unknown"}),
+    )
+    facts = f"{facts}, {percent(_share(seen))} known" if seen.any() else facts
+    return _View(pictures.of_scalar(value, low, high), legend, facts)
 
 
 def _lengths(value: Array) -> Array:
@@ -95,7 +99,7 @@ def _normals(shown: Map) -> _View:
 
 
 def _mask(shown: Map) -> _View:
-    flat = shown.value if shown.value.ndim == 2 else shown.value.any(axis=-1)
+    flat = shown.value if shown.value.ndim == 2 else np.logical_or.reduce(shown.value, axis=-1)
     legend = key({"white": "set", "black": "not set"})
     return _View(pictures.of_mask(flat), legend, f"{percent(_share(flat))} of the pixels")
 
@@ -111,13 +115,16 @@ def _regions(shown: Map) -> _View:
 
 
 def _confidence(shown: Map) -> _View:
-    value = np.nan_to_num(shown.value)
-    facts = f"{_range(shown.value, '1')}, {number(float(value.mean(dtype=np.float64)))} on average"
+    facts, mean = _range(shown.value, "1"), float(np.nan_to_num(shown.value).mean(dtype=np.float64))
+    if " to " in facts:
+        facts += f", {number(mean)} on average"
     return _View(pictures.of_confidence(shown.value), grey_bar(shown.name), facts)
 
 
 def _image(shown: Map) -> _View:
-    return _View(pictures.of_image(shown.value), None, _range(shown.value, "1"))
+    height, width = shown.value.shape[:2]
+    facts = f"{width} × {height} pixels, {_range(shown.value, '1')}"
+    return _View(pictures.of_image(shown.value), None, facts)
 
 
 _VIEWS: dict[str, Callable[[Map], _View]] = {
