@@ -77,6 +77,7 @@ class ArraySpec:
     unit: str = "1"
     _dtype: np.dtype[Any] = field(init=False, repr=False, compare=False)
     _fixed: tuple[tuple[int, int], ...] = field(init=False, repr=False, compare=False)
+    _ndim: int = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "_dtype", np.dtype(self.dtype))
@@ -84,6 +85,7 @@ class ArraySpec:
             raise TypeError(f"{self.kind} is of {self.dtype}; arrays on ports hold numbers or booleans")
         fixed = tuple((i, d) for i, d in enumerate(self.dims) if isinstance(d, int))
         object.__setattr__(self, "_fixed", fixed)
+        object.__setattr__(self, "_ndim", len(self.dims))
 
     def __str__(self) -> str:
         return f"{self.kind} {self.dtype} ({', '.join(map(str, self.dims))})"
@@ -98,9 +100,9 @@ class ArraySpec:
         """
         if type(value) is not np.ndarray:
             value = self._plain(value)
-        if value.dtype != self._dtype:
+        if value.dtype is not self._dtype and value.dtype != self._dtype:
             raise ValueError(f"wants {self}; this array is {value.dtype}")
-        if value.ndim != len(self.dims) or any(value.shape[i] != n for i, n in self._fixed):
+        if value.ndim != self._ndim or (self._fixed and any(value.shape[i] != n for i, n in self._fixed)):
             raise ValueError(f"wants {self}; this array has shape {value.shape}")
         return read_only(value)
 

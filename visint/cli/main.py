@@ -33,18 +33,25 @@ def program() -> Any:
         pretty_exceptions_enable=False,
         context_settings={"help_option_names": ["-h", "--help"]},
     )
-    app.callback()(_version)
+    app.callback()(_top)
     for verb in (run, check, show, modules, schema):
         app.command(name=verb.__name__.rpartition(".")[2], epilog=verb.EXAMPLES)(verb.command)
     return typer.main.get_command(app)
 
 
-def _version(version: bool = typer.Option(False, "--version", help="Print the version and leave.")) -> None:
-    if version:
+def _version(asked: bool) -> None:
+    if asked:
         import visint
 
         typer.echo(visint.__version__)
         raise typer.Exit
+
+
+_VERSION = typer.Option(False, "--version", callback=_version, is_eager=True, help="Print the version.")
+
+
+def _top(version: bool = _VERSION) -> None:  # noqa: ARG001 - its callback has done it by now
+    pass
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -23,21 +23,15 @@ EXAMPLES = (
 
 
 def command(  # noqa: PLR0913, PLR0917 - the options of a command line are many, and typer reads them here
-    graph: Annotated[
-        str, typer.Argument(help="A graph file, a shipped graph, or a run.json.")
-    ],
+    graph: Annotated[str, typer.Argument(help="A graph file, a shipped graph, or a run.json.")],
     out: Annotated[Path, typer.Option(help="The folder for the results: new, empty, or a former run.")],
     left: Annotated[str, typer.Option(help="The left (reference) image.")] = "",
     right: Annotated[str, typer.Option(help="The right image.")] = "",
     calib: Annotated[str, typer.Option(help="The calibration file (Middlebury calib.txt).")] = "",
-    light: Annotated[
-        str, typer.Option(help="Direction to a distant light, x,y,z.")
-    ] = "",
+    light: Annotated[str, typer.Option(help="Direction to a distant light, x,y,z.")] = "",
     light_at: Annotated[str, typer.Option(help="Position of a light, x,y,z, in the baseline's unit.")] = "",
     disparity_range: Annotated[str, typer.Option(help="Search range a,b in pixels.")] = "",
-    in_: Annotated[
-        list[str] | None, typer.Option("--in", help="NAME=PATH, any input; repeatable.")
-    ] = None,
+    in_: Annotated[list[str] | None, typer.Option("--in", help="NAME=PATH, any input; repeatable.")] = None,
     gamma: Annotated[
         float | None, typer.Option(help="Exponent of the images; 1 is linear. Default: sRGB for 8 bits.")
     ] = None,

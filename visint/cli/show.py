@@ -26,9 +26,7 @@ def command(
     expand: Annotated[
         bool, typer.Option("--expand", help="The plain graph of a hub, as a graph file.")
     ] = False,
-    dot: Annotated[
-        bool, typer.Option("--dot", help="Drawn, for Graphviz; loads no plugin.")
-    ] = False,
+    dot: Annotated[bool, typer.Option("--dot", help="Drawn, for Graphviz; loads no plugin.")] = False,
     html: Annotated[bool, typer.Option("--html", help="Drawn, as a page; loads no plugin.")] = False,
     failed: Annotated[str, typer.Option(help="A node to draw in red.")] = "",
 ) -> None:

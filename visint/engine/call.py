@@ -12,12 +12,12 @@ from visint import io
 from visint.arrays import read_only
 from visint.engine.commit import map_call
 from visint.engine.frame import Frame
+from visint.engine.invoke import invoke_module
 from visint.engine.state import State
 from visint.errors import Cancelled, ModuleError, Problem, VisintError, Where
 from visint.events import NodeFailed, NodeFinished, NodeStarted
 from visint.graph.graph import Node, Reader
-from visint.module import Context, Params, Ports
-from visint.registry.load import AnyModule
+from visint.module import Context
 from visint.schedule import Step
 from visint.schedule.order import per_turn
 
@@ -51,7 +51,20 @@ def read_as(value: Any, reader: Reader) -> Any:
 class Call:
     """A step made ready to run: everything that does not change from call to call is worked out once."""
 
-    __slots__ = ("_defaults", "_invoke", "_levels", "_lists", "_outs", "_per_turn", "_seed", "_singles", "node")
+    __slots__ = (
+        "_cancelled",
+        "_defaults",
+        "_frame",
+        "_invoke",
+        "_levels",
+        "_lists",
+        "_note",
+        "_outs",
+        "_per_turn",
+        "_seed",
+        "_singles",
+        "node",
+    )
 
     def __init__(self, step: Step, seed: int, sub_graph: SubGraph, state: State) -> None:
         self.node = step.node
@@ -63,6 +76,9 @@ class Call:
         self._seed = (seed, step.key)
         self._defaults = _defaults(step.node)
         self._invoke = _by_level(step.node, sub_graph, state)
+        self._frame = Frame()
+        self._cancelled = state.cancel.is_set
+        self._note = lambda what, name, value: state.note(self.node.name, self._frame, what, name, value)
 
     def __call__(self, state: State, frame: Frame) -> None:
         """Runs the node once.
@@ -98,7 +114,7 @@ class Call:
         if state.emit is not None:
             state.emit(NodeStarted(name, level, turn, started))
         try:
-            outputs = self._invoke(values, self._context(state, frame))
+            outputs = self._invoke(values, self._context(frame))
         except BaseException as error:
             failure = self._failure(error, frame)
             state.tell(NodeFailed(name, level, turn, str(failure)))
@@ -111,16 +127,16 @@ class Call:
             state.emit(NodeFinished(name, level, turn, started, seconds, outputs))
         return outputs
 
-    def _context(self, state: State, frame: Frame) -> Context:
-        node = self.node.name
+    def _context(self, frame: Frame) -> Context:
+        self._frame = frame
         return Context(
             level=frame.level,
             size=frame.size,
             turns=frame.turns,
             seed=self._seed,
             per_turn=self._per_turn,
-            note=lambda what, name, value: state.note(node, frame, what, name, value),
-            cancelled=state.cancel.is_set,
+            note=self._note,
+            cancelled=self._cancelled,
         )
 
     def _failure(self, error: BaseException, frame: Frame) -> BaseException:
@@ -168,44 +184,8 @@ def _by_level(node: Node, sub_graph: SubGraph, state: State) -> Invoke:
     if node.callee.module is None:
         return map_call(node, state)
     module = node.callee.module
-    usual = _module_call(module, node.params)
+    usual = invoke_module(module, node.params)
     if not node.at:
         return usual
-    at = {level: _module_call(module, params) for level, params in node.at.items()}
+    at = {level: invoke_module(module, params) for level, params in node.at.items()}
     return lambda values, context: at.get(context.level, usual)(values, context)
-
-
-_set = object.__setattr__
-
-
-def _module_call(module: type[AnyModule], params: Any) -> Invoke:
-    """Calls a module; its inputs are not validated again, since what feeds them was when it was made.
-
-    Only that ports naming the same dim agree is looked at, for that no single output can know.
-    """
-    assert isinstance(params, Params)
-    instance = module(params)
-    inputs_type, outputs_type = module.Inputs, module.Outputs
-    agree, fields, run = inputs_type.dims_agree, set(inputs_type.model_fields), instance.run
-    new = inputs_type.__new__
-
-    def invoke(values: Values, context: Context) -> Mapping[str, Any]:
-        try:
-            agree(values)
-        except ValueError as error:
-            raise ModuleError.of("VI402", f"its inputs do not fit each other: {error}") from None
-        inputs = new(inputs_type)
-        _set(inputs, "__dict__", values)
-        _set(inputs, "__pydantic_fields_set__", fields)
-        _set(inputs, "__pydantic_extra__", None)
-        _set(inputs, "__pydantic_private__", None)
-        outputs = run(inputs, context)
-        if type(outputs) is not outputs_type:
-            raise ModuleError.of("VI402", _no_outputs(outputs, outputs_type))
-        return outputs.__dict__
-
-    return invoke
-
-
-def _no_outputs(outputs: object, wanted: type[Ports]) -> str:
-    return f"run returned {type(outputs).__name__}; it must return {wanted.__name__}"

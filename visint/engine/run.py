@@ -23,7 +23,6 @@ from visint.fields.camera import Camera
 from visint.fields.evidence import Evidence
 from visint.graph import Graph, load
 from visint.graph.graph import Node
-from visint.module import Context
 from visint.names import did_you_mean, listed
 from visint.results import Result, gather
 from visint.schedule import Block, Repeat, Schedule, Step, compile_graph

@@ -1,0 +1,96 @@
+"""Calling a module: inputs filled without validating again what was validated when it was made."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple
+
+from visint.errors import ModuleError
+from visint.module import Context, Params, Ports, PortSpec
+from visint.registry.load import AnyModule
+
+__all__ = ["Invoke", "Values", "invoke_module"]
+
+Values = dict[str, Any]
+Invoke = Callable[[Values, Context], Any]
+_set = object.__setattr__
+
+
+def invoke_module(module: type[AnyModule], params: Any) -> Invoke:
+    """A function that calls ``module`` with ``params``, and gives its outputs as a mapping.
+
+    What feeds a port was checked when it was made; only that ports naming the same dim agree, inputs and
+    outputs together, is looked at here, for that no single value can know.
+    """
+    assert isinstance(params, Params)
+    run = module(params).run
+    inputs_type, outputs_type = module.Inputs, module.Outputs
+    agree, fields, new = inputs_type.dims_agree, set(inputs_type.model_fields), inputs_type.__new__
+    shared = tuple(_shared(inputs_type.specs, outputs_type.specs))
+
+    def invoke(values: Values, context: Context) -> Mapping[str, Any]:
+        try:
+            agree(values)
+        except ValueError as error:
+            raise ModuleError.of("VI402", f"its inputs do not fit each other: {error}") from None
+        inputs = new(inputs_type)
+        _set(inputs, "__dict__", values)
+        _set(inputs, "__pydantic_fields_set__", fields)
+        _set(inputs, "__pydantic_extra__", None)
+        _set(inputs, "__pydantic_private__", None)
+        outputs = run(inputs, context)
+        if type(outputs) is not outputs_type:
+            raise ModuleError.of("VI402", _no_outputs(outputs, outputs_type))
+        given = outputs.__dict__
+        for dim in shared:
+            dim.check(values, given)
+        return given
+
+    return invoke
+
+
+class _Dim(NamedTuple):
+    """A dim that inputs and outputs share: the first port of either side that always has it, and its axis."""
+
+    name: str
+    source: PortSpec
+    source_axis: int
+    target: PortSpec
+    target_axis: int
+
+    def check(self, values: Values, given: Mapping[str, Any]) -> None:
+        before, after = values[self.source.name], given[self.target.name]
+        if after is None:
+            return
+        wanted = (before.value if self.source.evidence else before).shape[self.source_axis]
+        found = (after.value if self.target.evidence else after).shape[self.target_axis]
+        if wanted != found:
+            said = f"{self.name} is {wanted} on input {self.source.name!r} but {found} on output {self.target.name!r}"
+            raise ModuleError.of("VI402", said)
+
+
+def _shared(inputs: Mapping[str, PortSpec], outputs: Mapping[str, PortSpec]) -> Iterator[_Dim]:
+    seen: set[str] = set()
+    for target in outputs.values():
+        for target_axis, dim in _dims(target):
+            source = next(
+                (
+                    (spec, i)
+                    for spec in inputs.values()
+                    for i, d in _dims(spec)
+                    if d == dim and not spec.optional
+                ),
+                None,
+            )
+            if source is not None and dim not in seen:
+                seen.add(dim)
+                yield _Dim(dim, source[0], source[1], target, target_axis)
+
+
+def _dims(spec: PortSpec) -> Iterator[tuple[int, str]]:
+    if spec.array is not None and not spec.many:
+        yield from ((i, dim) for i, dim in enumerate(spec.array.dims) if isinstance(dim, str))
+
+
+def _no_outputs(outputs: object, wanted: type[Ports]) -> str:
+    return f"run returned {type(outputs).__name__}; it must return {wanted.__name__}"
