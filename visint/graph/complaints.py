@@ -1,28 +1,22 @@
-"""What pydantic says about a spec or about parameters, turned into problems a person can mend."""
+"""What pydantic says about a spec, turned into problems a person can mend: found, wanted, the line to write."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from pydantic import BaseModel, ValidationError
 
 from visint.errors import Problem, Where
-from visint.graph.spec import (
-    FeedbackSpec,
-    GraphSpec,
-    HubSpec,
-    LoopSpec,
-    NodeSpec,
-    SpokeSpec,
-    StepSpec,
-    UntilSpec,
-)
-from visint.names import did_you_mean
+from visint.graph.examples import CHILDREN, EXAMPLES, MEMBERS
+from visint.graph.spec import GraphSpec
+from visint.names import did_you_mean, listed
 
-__all__ = ["complaints", "keys_of"]
+__all__ = ["complaints", "keys_of", "shown"]
 
 Finder = Callable[..., Where]
+Path = tuple[int | str, ...]
 
 
 def keys_of(model: type[BaseModel]) -> list[str]:
@@ -30,17 +24,29 @@ def keys_of(model: type[BaseModel]) -> list[str]:
     return [str(info.validation_alias or name) for name, info in model.model_fields.items()]
 
 
+def shown(value: Any) -> str:
+    """A value of a graph file in a message: short, and on one line."""
+    if isinstance(value, dict | list):
+        return {dict: "a mapping", list: "a list"}[type(value)] if value else "nothing in it"
+    if value is None or isinstance(value, bool):
+        return {None: "nothing", True: "true", False: "false"}[value]
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}…"
+
+
 def complaints(error: ValidationError, data: Any, where: Finder) -> list[Problem]:
     """One problem for each place that pydantic complains about, in the order of the file."""
-    found: dict[tuple[Any, ...], Problem] = {}
+    found: dict[Path, Problem] = {}
     for item in error.errors(include_input=False, include_url=False):
         path = _path_in(data, item["loc"], item["type"])
+        if item["type"] == "string_type" and isinstance(_at(data, path), list):
+            continue  # text or a list may stand here; what is wrong with the list is told by itself
         if path not in found:
-            found[path] = _problem(item, path, where)
-    return list(found.values())
+            found[path] = _problem(item, path, data, where)
+    return sorted(found.values(), key=lambda problem: (problem.where.line, problem.where.column))
 
 
-def _path_in(data: Any, loc: tuple[int | str, ...], kind: str) -> tuple[int | str, ...]:
+def _path_in(data: Any, loc: tuple[int | str, ...], kind: str) -> Path:
     """The part of pydantic's location that names places of the file: it adds the members of unions to it."""
     path: list[int | str] = []
     for step in loc:
@@ -58,59 +64,95 @@ def _leads_on(data: Any, step: int | str) -> bool:
     return isinstance(data, Mapping) and step in data
 
 
-def _problem(item: Any, path: tuple[Any, ...], where: Finder) -> Problem:
-    model = _model_at(path[:-1])
-    if item["type"] == "extra_forbidden":
-        known = keys_of(model)
-        near = did_you_mean(str(path[-1]), known)
-        return Problem(
-            "VI105",
-            f"there is no key {path[-1]!r} here",
-            where(*path, key=True),
-            "keys here: " + ", ".join(known),
-            f"{near}:" if near else "",
-        )
-    if item["type"] == "missing":
-        known = keys_of(model)
-        lacks = where(*path[:-1])
-        found, choices = f"the key {path[-1]!r} is missing", "keys here: " + ", ".join(known)
-        return Problem("VI105", found, lacks, choices, f"{path[-1]}: …")
-    return Problem("VI105", _sentence(item), where(*path))
+def _at(data: Any, path: Path) -> Any:
+    for step in path:
+        data = data[step] if _leads_on(data, step) else None
+    return data
 
 
-def _sentence(item: Any) -> str:
-    text = str(item["msg"]).replace("Input should be", "should be").replace("Value error, ", "")
-    kinds = {
-        "dict_type": "should be a mapping, {key: value}",
-        "model_type": "should be a mapping, {key: value}",
-    }
-    kinds |= {"tuple_type": "should be a list, [a, b]", "string_type": "should be text"}
-    return str(kinds.get(item["type"], text))
+class _Spot(NamedTuple):
+    """Where in the form of graph files a path leads: to a key of a model, or to a member of its value."""
+
+    model: type[BaseModel]
+    key: str
+    member: str
+
+    @property
+    def example(self) -> str:
+        """A line that would be right there."""
+        if self.member and (self.model, self.key) in MEMBERS:
+            return f"{self.member}: {MEMBERS[self.model, self.key]}"
+        return f"{self.key}: {EXAMPLES[self.model].get(self.key, '…')}" if self.key else ""
 
 
-_CHILD: Mapping[type[BaseModel], Mapping[str, type[BaseModel]]] = {
-    GraphSpec: {"loops": LoopSpec, "nodes": NodeSpec},
-    HubSpec: {"spokes": SpokeSpec, "reconcile": StepSpec},
-    NodeSpec: {"feedback": FeedbackSpec},
-    SpokeSpec: {"feedback": FeedbackSpec},
-}
-_DIRECT: Mapping[tuple[type[BaseModel], str], type[BaseModel]] = {
-    (GraphSpec, "hub"): HubSpec,
-    (LoopSpec, "until"): UntilSpec,
-    (SpokeSpec, "cohere"): StepSpec,
-    (SpokeSpec, "reconcile"): StepSpec,
-}
-
-
-def _model_at(path: tuple[Any, ...]) -> type[BaseModel]:
-    """The model that a path of keys leads to, GraphSpec at the root."""
+def _spot(path: Path) -> _Spot:
     model: type[BaseModel] = GraphSpec
-    steps = list(path)
-    while steps:
-        step = steps.pop(0)
-        if (model, step) in _DIRECT:
-            model = _DIRECT[model, step]
-        elif step in _CHILD.get(model, {}) and steps:
-            model = _CHILD[model][step]
-            steps.pop(0)
-    return model
+    key = member = ""
+    for step in map(str, path):
+        if (model, key) in CHILDREN and (member or (model, key) not in MEMBERS):
+            model, key, member = CHILDREN[model, key], step, ""
+        elif key:
+            member = member or step
+        else:
+            key = step
+    return _Spot(model, key, member)
+
+
+def _problem(item: Any, path: Path, data: Any, where: Finder) -> Problem:
+    spot = _spot(path)
+    if item["type"] == "extra_forbidden":
+        return _unknown_key(spot, path, where)
+    if item["type"] == "missing":
+        choices = "keys here: " + listed(keys_of(spot.model))
+        return Problem("VI105", f"the key {path[-1]!r} is missing", where(*path), choices, spot.example)
+    if item["loc"][-1] == "[key]":
+        found = f"the key {shown(path[-1])} {_wanted(item)}"
+        return Problem("VI105", found, where(*path, key=True), write=spot.example)
+    value = _at(data, path)
+    choices, write = _choice(item, spot, value)
+    return Problem("VI105", f"found {shown(value)}; {_wanted(item)}", where(*path), choices, write)
+
+
+def _unknown_key(spot: _Spot, path: Path, where: Finder) -> Problem:
+    known = keys_of(spot.model)
+    near = did_you_mean(spot.key, known)
+    example = f"{near}: {EXAMPLES[spot.model].get(near, '…')}" if near else "(nothing: leave the key out)"
+    found = f"there is no key {path[-1]!r} here"
+    return Problem("VI105", found, where(*path, key=True), "keys here: " + listed(known), example)
+
+
+def _choice(item: Any, spot: _Spot, value: Any) -> tuple[str, str]:
+    """The choices where there are a few words to choose from, and the line to write."""
+    words = re.findall(r"'(\w+)'", str(item.get("ctx", {}).get("expected", "")))
+    if words:
+        near = did_you_mean(str(value), words) or words[0]
+        return "choices: " + listed(words), f"{spot.member or spot.key}: {near}"
+    if item["type"] in ("model_type", "model_attributes_type") and isinstance(value, str) and spot.member:
+        return "", _instead_of_text(spot, value)
+    return "", spot.example
+
+
+def _instead_of_text(spot: _Spot, text: str) -> str:
+    """``match: stereo.sgm`` was meant as a module's name, most likely."""
+    written = f"{spot.member}: {{uses: {text}}}"
+    return written if spot.key in ("nodes", "spokes", "reconcile") and "." in text else spot.example
+
+
+_WANTED = {
+    "dict_type": "should be a mapping, {key: value}",
+    "model_type": "should be a mapping, {key: value}",
+    "model_attributes_type": "should be a mapping, {key: value}",
+    "tuple_type": "should be a list, [a, b]",
+    "string_type": "should be text",
+    "int_type": "should be a whole number",
+    "int_parsing": "should be a whole number",
+    "int_from_float": "should be a whole number",
+    "float_type": "should be a number",
+    "float_parsing": "should be a number",
+    "too_long": "should have one member",
+}
+
+
+def _wanted(item: Any) -> str:
+    text = str(item["msg"]).replace("Input should be", "should be").replace("Value error, ", "")
+    return _WANTED.get(item["type"], text[:1].lower() + text[1:])

@@ -46,8 +46,8 @@ class UntilSpec(_Part):
     """When a loop has gone round enough: ``change_of`` a port stays ``below`` a bound, or a port ``holds``."""
 
     change_of: Ref | None = None
-    below: float | None = Field(default=None, gt=0)
-    patience: int = Field(default=1, ge=1)
+    below: float | None = Field(default=None, gt=0, strict=True)
+    patience: int = Field(default=1, ge=1, strict=True)
     holds: Ref | None = None
 
 
@@ -55,11 +55,11 @@ class LoopSpec(_Part):
     """A loop: a bounded number of turns, or a pyramid of levels from coarse to fine."""
 
     over: Literal["pyramid"] | None = None
-    coarsest: int | None = Field(default=None, ge=1)
-    levels: int | None = Field(default=None, ge=1, le=16)
+    coarsest: int | None = Field(default=None, ge=1, strict=True)
+    levels: int | None = Field(default=None, ge=1, le=16, strict=True)
     between: dict[str, Interpolation] = {}
     inside: str | None = None
-    times: int | None = Field(default=None, ge=1)
+    times: int | None = Field(default=None, ge=1, strict=True)
     until: UntilSpec | None = None
     on_exhausted: Literal["accept", "warn", "fail"] = "accept"
 
