@@ -9,7 +9,7 @@ from visint.errors import UsageError
 from visint_lab.rays.scene import Grain, Scene
 from visint_lab.scenes.demonstration import sphere_before_plane
 from visint_lab.scenes.poses import Pose, random_pose
-from visint_lab.scenes.sets import OBJECTS, SURFACES, set_a, set_b
+from visint_lab.scenes.sets import OBJECTS, SCANS, SURFACES, scanned, set_a, set_b
 
 __all__ = ["NOISES", "names", "scene"]
 
@@ -21,15 +21,16 @@ NOISES: Mapping[str, Grain] = {
 }
 """Noise by the end of a name: parts of full brightness, or of the pixel's own (``x``)."""
 
-_OF_SET = {"a": ("", "2%"), "b": ("", "10%", "x10%")}
+_OF_SET = {"a": ("", "2%"), "b": ("", "10%", "x10%"), "r": ("", "2%")}
 
 
 def names(which: str = "") -> tuple[str, ...]:
-    """Every scene's name; of set ``a`` or ``b`` only if asked."""
+    """Every scene's name; of ``a``, ``b`` or ``range`` only if asked."""
     plain = [f"a/{name}/{surface}" for surface in SURFACES["a"] for name in OBJECTS]
     plain += [f"b/{name}/checker" for name in OBJECTS] + [
         f"b/mozart/{surface}" for surface in SURFACES["mozart"]
     ]
+    plain += [f"range/{name}" for name in SCANS]
     noisy = [f"{name}+{noise}" if noise else name for name in plain for noise in _OF_SET[name[0]]]
     return tuple(name for name in noisy if name.startswith(which))
 
@@ -52,12 +53,14 @@ def scene(name: str, size: int = 512, seed: int | None = None) -> Scene:
     if name not in names():
         raise UsageError.of("VI701", f"no scene is named {name!r}", choices=", ".join((*names(), "demo")))
     plain, _, noise = name.partition("+")
-    which, thing, surface = plain.split("/")
-    made = _made(which, thing, surface, size, seed)
+    made = _made(plain, size, seed)
     return replace(made, name=name if seed is None else f"{name}#{seed}", grain=NOISES[noise])
 
 
-def _made(which: str, thing: str, surface: str, size: int, seed: int | None) -> Scene:
+def _made(plain: str, size: int, seed: int | None) -> Scene:
+    if plain.startswith("range/"):
+        return scanned(plain.removeprefix("range/"), size)
+    which, thing, surface = plain.split("/")
     shown = "ellipsoid" if (thing, surface) == ("sphere", "specular") else thing
     pose: Pose | None = None if seed is None else random_pose(shown, seed)
     if thing == "mozart":

@@ -8,11 +8,12 @@ from visint_lab.rays.rig import Rig
 from visint_lab.rays.scene import Lamp, Scene, Thing
 from visint_lab.rays.shapes import Box, Cylinder, Ellipsoid, Hyperboloid, Paraboloid, Shape, Sphere, Torus
 from visint_lab.scenes.poses import CHOSEN, Pose
-from visint_lab.scenes.surfaces import mozart
+from visint_lab.scenes.surfaces import diligent, mozart
 
-__all__ = ["OBJECTS", "SURFACES", "set_a", "set_b"]
+__all__ = ["OBJECTS", "SCANS", "SURFACES", "scanned", "set_a", "set_b"]
 
 OBJECTS = ("parallelepiped", "sphere", "cylinder", "paraboloid", "hyperboloid", "torus")
+SCANS = ("bear", "buddha", "cat", "pot1", "reading")
 SURFACES = {"a": ("lambertian", "specular"), "b": ("checker",), "mozart": ("no", "partial", "full", "two")}
 SURFACES["mozart"] += ("specular",)
 ALBEDO = 0.8
@@ -54,6 +55,13 @@ def set_a(name: str, surface: str, size: int = 512, pose: Pose | None = None) ->
     thing = Thing(solid(name, pose.scale), _gloss(surface), (0.0, 0.0, 50.0), pose.rotation)
     rig = Rig.parallel((size, size), 800.0 * size / 512, 5.0)
     return Scene(f"a/{name}/{surface}", (thing,), Lamp("point", (0.0, 0.0, -100.0)), rig)
+
+
+def scanned(name: str, size: int = 512) -> Scene:
+    """A scanned figure in chapter 4's set-up, Lambertian: it stands in for scans that are not public."""
+    thing = Thing(diligent(name), Plain(ALBEDO), (0.0, 0.0, 50.0))
+    rig = Rig.parallel((size, size), 800.0 * size / 512, 5.0)
+    return Scene(f"range/{name}", (thing,), Lamp("point", (0.0, 0.0, -100.0)), rig)
 
 
 def _chapter_5_rig(size: int) -> Rig:
