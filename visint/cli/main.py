@@ -8,7 +8,6 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
-from typing import Any
 
 import typer
 
@@ -16,13 +15,13 @@ from visint.cli import check, modules, run, schema, show
 from visint.cli.verbs import Verbs
 from visint.errors import VisintError
 
-__all__ = ["main", "program"]
+__all__ = ["application", "main"]
 
 EPILOG = "--debug, anywhere, shows the traceback of an error. NO_COLOR is respected."
 
 
-def program() -> Any:
-    """The whole command line as a click command, plugins' verbs included."""
+def application() -> typer.Typer:
+    """The whole command line, plugins' verbs included."""
     app = typer.Typer(
         name="visint",
         help="Recover 3-D structure from a stereo pair by integrating vision modules.",
@@ -36,7 +35,7 @@ def program() -> Any:
     app.callback()(_top)
     for verb in (run, check, show, modules, schema):
         app.command(name=verb.__name__.rpartition(".")[2], epilog=verb.EXAMPLES)(verb.command)
-    return typer.main.get_command(app)
+    return app
 
 
 def _version(asked: bool) -> None:
@@ -68,7 +67,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(given: list[str], debug: bool) -> int:
     try:
-        left_with = program().main(given, prog_name="visint", standalone_mode=False)
+        left_with = typer.main.get_command(application()).main(given, prog_name="visint", standalone_mode=False)
         return left_with if isinstance(left_with, int) else 0
     except VisintError as error:
         if debug:
