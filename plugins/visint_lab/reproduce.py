@@ -85,11 +85,12 @@ def _page(
 
 
 def _pictures(result: RowResult) -> dict[str, Array]:
+    from visint.io import srgb_from_linear
     from visint_lab.trials import page
 
     outcome = result.outcomes[0]
     truth = outcome.pair.truth
-    shown = {"left": page.shown_image(outcome.pair.left), "right": page.shown_image(outcome.pair.right)}
+    shown = {"left": srgb_from_linear(outcome.pair.left), "right": srgb_from_linear(outcome.pair.right)}
     shown["true depth"] = page.shown_depth(truth.depth, truth.depth)
     shown["true normals"] = page.shown_normals(truth.normals, truth.normals)
     for name, found in outcome.maps.items():

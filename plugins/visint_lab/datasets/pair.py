@@ -64,7 +64,7 @@ class Pair:
 
         from visint.io import srgb_from_linear
 
-        grey = srgb_from_linear(self.left).astype(np.float64) * 255
+        grey = srgb_from_linear(self.left).astype(np.float64)
         variance = uniform_filter(grey**2, 9) - uniform_filter(grey, 9) ** 2
         return np.asarray(variance < 4.0**2)
 

@@ -10,8 +10,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-
 from visint.arrays import Array
 from visint.errors import ModuleError, UsageError
 from visint_lab.datasets.pair import Pair
@@ -59,7 +57,7 @@ def stored(image: Array) -> Array:
     """uint8 (H, W): a linear image as an 8-bit file holds it, which is what peers are made for."""
     from visint.io import srgb_from_linear
 
-    return np.round(srgb_from_linear(np.clip(image, 0, 1)) * 255).astype(np.uint8)
+    return srgb_from_linear(image)
 
 
 def run_peer(name: str, pair: Pair) -> PeerRun:

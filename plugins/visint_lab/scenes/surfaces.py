@@ -38,8 +38,8 @@ def _mozart_heights() -> NDArray[np.float64]:
     return _solid(np.asarray(loadmat(BytesIO(packed))["mozart"], dtype=np.float64))
 
 
-def diligent(name: str, width: float = 20.0) -> HeightMap:
-    """The scanned figure ``name`` (bear, buddha, cat, pot1, reading), its foreground ``width`` units wide."""
+def diligent(name: str, extent: float = 17.0) -> HeightMap:
+    """The scanned figure ``name`` (bear, buddha, cat, pot1, reading), ``extent`` units wide or high at most."""
     from visint.io import read_npz
 
     depth = read_npz(data_folder(f"extra/diligent_gt/{name}") / "depth_gt.npz")["depth_gt"].astype(np.float64)
@@ -49,7 +49,7 @@ def diligent(name: str, width: float = 20.0) -> HeightMap:
     # Seen from far away with a long lens: what a pixel spans is the same over the whole figure.
     heights = np.where(inside, np.nanmax(depth) - depth, 0.0)[crop]
     figure = np.where(inside[crop], heights / _span(depth, name), np.nan)
-    return _centred(figure, width / (columns.max() - columns.min()))
+    return _centred(figure, extent / max(np.ptp(columns), np.ptp(rows)))
 
 
 def _span(depth: NDArray[np.float64], name: str) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 
 from visint.arrays import Array
 
-__all__ = ["page", "picture", "shown_depth", "shown_image", "shown_normals", "table"]
+__all__ = ["page", "picture", "shown_depth", "shown_normals", "table"]
 
 _STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 84rem; padding: 0 1rem; }
@@ -52,13 +52,6 @@ def picture(caption: str, pixels: Array) -> str:
     return (
         f'<figure><img alt="{text}" src="data:image/png;base64,{data}"><figcaption>{text}</figcaption></figure>'
     )
-
-
-def shown_image(image: Array) -> Array:
-    """uint8 (H, W): a linear image as screens want it."""
-    from visint.io import srgb_from_linear
-
-    return np.round(srgb_from_linear(np.clip(image, 0, 1)) * 255).astype(np.uint8)
 
 
 def shown_depth(depth: Array, truth: Array) -> Array:

@@ -55,3 +55,17 @@ def test_a_peer_runs_in_its_own_process_and_says_what_it_cost(pair):
     assert run.disparity.shape == pair.left.shape
     assert 0 < run.cost.cpu < 10
     assert 20 < run.cost.peak_mb < 500
+
+
+def test_peers_get_what_an_8_bit_file_would_hold():
+    """Linear 0, 0.2140 and 1 are stored as 0, 127 or 128, and 255."""
+    np.testing.assert_allclose(stored(np.array([[0, 0.2140, 1]], np.float32)), [[0, 127.5, 255]], atol=0.6)
+
+
+def test_a_flat_image_has_low_texture_and_noise_has_not():
+    """Low texture is decided on 8-bit brightness: a flat half and a noisy half are told apart."""
+    image = np.full((40, 80), 0.3, np.float32)
+    image[:, 40:] += np.random.default_rng(0).normal(0, 0.05, (40, 40)).astype(np.float32)
+    low = Pair("x", image, image, visint.Camera.uncalibrated(80, 40)).low_texture
+    assert low[:, :34].all()
+    assert not low[:, 46:].any()
