@@ -91,7 +91,9 @@ def pictures(page):
 
     found = []
     for tag in re.findall(r"<img [^>]*>", page):
-        data = base64.b64decode(re.search(r'src="data:image/(?:png|jpeg);base64,([^"]*)"', tag)[1], validate=True)
+        data = base64.b64decode(
+            re.search(r'src="data:image/(?:png|jpeg);base64,([^"]*)"', tag)[1], validate=True
+        )
         image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
         found.append((re.search(r'alt="([^"]*)"', tag)[1], image[..., ::-1]))
     return found

@@ -32,10 +32,10 @@ def test_the_unknown_grey_is_no_colour_of_the_scale():
 
 @pytest.mark.parametrize(
     ("value", "wanted"),
-    [([1, 1, 1], (1, 2)), ([-5, -5], (-5, 0)), ([np.nan, np.nan], (0, 1)), ([3, np.nan], (3, 6))],
+    [([1, 1, 1], (0.5, 1.5)), ([-5, -5], (-7.5, -2.5)), ([np.nan, np.nan], (0, 1)), ([0, np.nan], (-0.5, 0.5))],
 )
 def test_the_range_is_never_empty(value, wanted):
-    """A constant starts its own range; where nothing is known it is 0 to 1."""
+    """A constant lies in the middle of its own; where nothing is known it is 0 to 1."""
     assert pictures.span(np.array([value], np.float32)) == wanted
 
 

@@ -61,11 +61,19 @@ def test_it_tells_what_was_run_on_what(met):
     assert told["visint"] == visint.__version__
     assert told["graph"]["name"] == "meeting"
     assert told["graph_hash"] == hashlib.sha256(met.graph.to_yaml().encode()).hexdigest()
-    assert told["inputs"]["left"] == {"sha256": array_digest(met.inputs["left"]), "paths": ["a.png"], "gamma": 1.0}
+    assert told["inputs"]["left"] == {
+        "sha256": array_digest(met.inputs["left"]),
+        "paths": ["a.png"],
+        "gamma": 1.0,
+    }
     assert told["inputs"]["camera"]["value"]["width"] == 64
     assert told["outputs"]["depth"]["shape"] == [48, 64]
     assert told["outputs"]["depth"]["last_written_by"]["node"] == met.writers["depth"].node
-    assert told["outputs"]["count"] == {"kind": "Scalar", "value": 1.0, "sha256": told["outputs"]["count"]["sha256"]}
+    assert told["outputs"]["count"] == {
+        "kind": "Scalar",
+        "value": 1.0,
+        "sha256": told["outputs"]["count"]["sha256"],
+    }
     assert told["parameters"]["shade"]["near"] == 700.0
     assert told["modules"]["toy.cue"] == {"version": "1", "from": "given in code"}
     assert set(told["libraries"]) >= {"python", "numpy", "opencv-python-headless"}

@@ -31,12 +31,16 @@ UNKNOWN = 128
 
 
 def span(value: Array) -> tuple[float, float]:
-    """The range that a picture of ``value`` shows: the 2nd to the 98th percentile of the known."""
+    """The range that a picture of ``value`` shows: the 2nd to the 98th percentile of the known.
+
+    A constant lies in the middle of its range.
+    """
     seen = value[known(value)]
     if not seen.size:
         return 0.0, 1.0
     low, high = (float(q) for q in np.percentile(seen.astype(np.float64), (2, 98)))
-    return low, high if high > low else low + max(1.0, abs(low))
+    half = max(1.0, abs(low)) / 2
+    return (low, high) if high > low else (low - half, low + half)
 
 
 def of_scalar(value: Array, low: float, high: float) -> Array:

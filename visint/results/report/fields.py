@@ -23,7 +23,7 @@ def inputs(setting: Setting) -> Markup | None:
     pictures, others = [], []
     for name, value, kind in _inputs(setting):
         if is_map(value):
-            pictures.append(setting.figure(f"input-{name}", name, kind, value))
+            pictures.append(setting.figure(name, kind, value))
         else:
             others.append((name, kind, _told(value)))
     if not pictures and not others:
@@ -47,9 +47,9 @@ def _inputs(setting: Setting) -> Iterator[tuple[str, Any, str]]:
 def outputs(setting: Setting) -> Markup:
     """What the run gave: maps as pictures, their confidence beside them, everything else in a table."""
     maps, kinds = setting.maps(), setting.result.kinds
-    figures = [setting.figure(f"output-{name}", name, kinds[name], value) for name, value in maps.items()]
+    figures = [setting.figure(name, kinds[name], value) for name, value in maps.items()]
     figures += [
-        setting.figure(f"confidence-{names[0]}", f"confidence of {_listed(names)}", "Confidence", value)
+        setting.figure(f"confidence of {_listed(names)}", "Confidence", value)
         for names, value in _confidences(setting.result.confidence)
     ]
     shown = [_grid(figures)] if figures else []
@@ -91,10 +91,7 @@ def _said(setting: Setting, name: str, said: Evidence) -> Iterator[Markup]:
     )
     yield element("h3", name, " ", element("small", f"on {said.measures.lower()}"))
     yield _grid(
-        [
-            setting.figure(f"evidence-{name}-{part}", part, kind, value, given)
-            for part, kind, value, given in parts
-        ],
+        [setting.figure(part, kind, value, given) for part, kind, value, given in parts],
         "row",
     )
 
@@ -115,7 +112,7 @@ def _told(value: Any) -> Part:
         return _array(value)
     if isinstance(value, BaseModel):
         return element("span", _fields(value))
-    return value if isinstance(value, str) else f"a {type(value).__name__}"
+    return value if isinstance(value, str) else f"an object of class {type(value).__name__}"
 
 
 def _array(value: Array) -> str:

@@ -10,32 +10,41 @@ from visint.results.report.embed import embedded
 from visint.results.report.markup import Markup, Part, element, joined
 from visint.results.report.numbers import number, with_unit
 
-__all__ = ["color_bar", "grey_bar", "key", "normals_key"]
+__all__ = ["color_bar", "gradients", "grey_bar", "key", "normals_key"]
 
 _STOPS = 17
 
 
-def color_bar(low: float, high: float, unit: str, name: str) -> Markup:
-    """The turbo colours from ``low`` to ``high``; ``name`` is one that no other bar of the page has."""
+def gradients() -> Markup:
+    """What bars are filled with, once a page."""
     levels = np.linspace(0, 255, _STOPS).astype(np.uint8)[None]
     colors = ["#{:02x}{:02x}{:02x}".format(*rgb) for rgb in pictures.turbo(levels)[0]]
-    ends = (with_unit(number(low), unit), with_unit(number(high), unit))
-    middle = number((low + high) / 2)
-    return _bar(colors, (ends[0], middle, ends[1]), f"bar-{name}", "Colour bar: blue is {}, red is {}")
+    both = _gradient("turbo", colors), _gradient("grey", ["#000", "#fff"])
+    return element("svg", *both, width=0, height=0, class_="hidden", aria_hidden="true")
 
 
-def grey_bar(name: str) -> Markup:
-    """Grey from 0, black, to 1, white."""
-    return _bar(["#000", "#fff"], ("0", "0.5", "1"), f"bar-{name}", "Grey bar: black is {}, white is {}")
-
-
-def _bar(colors: list[str], ticks: tuple[str, str, str], name: str, says: str) -> Markup:
+def _gradient(name: str, colors: list[str]) -> Markup:
     last = len(colors) - 1
     stops = [element("stop", offset=f"{i / last:.4g}", stop_color=color) for i, color in enumerate(colors)]
+    return element("linearGradient", *stops, id=name)
+
+
+def color_bar(low: float, high: float, unit: str) -> Markup:
+    """The turbo colours from ``low`` to ``high``."""
+    ends = (with_unit(number(low), unit), with_unit(number(high), unit))
+    middle = number((low + high) / 2)
+    return _bar("turbo", (ends[0], middle, ends[1]), "Colour bar: blue is {}, red is {}")
+
+
+def grey_bar() -> Markup:
+    """Grey from 0, black, to 1, white."""
+    return _bar("grey", ("0", "0.5", "1"), "Grey bar: black is {}, white is {}")
+
+
+def _bar(fill: str, ticks: tuple[str, str, str], says: str) -> Markup:
     drawn = element(
         "svg",
-        element("linearGradient", *stops, id=name),
-        element("rect", width=100, height=8, fill=f"url(#{name})"),
+        element("rect", width=100, height=8, fill=f"url(#{fill})"),
         viewBox="0 0 100 8",
         preserveAspectRatio="none",
         role="img",

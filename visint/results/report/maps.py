@@ -19,9 +19,8 @@ __all__ = ["Map", "figure", "is_map"]
 
 
 class Map(NamedTuple):
-    """A map to be shown: ``name`` and ``title`` for people, the field ``kind``, the array and its unit."""
+    """A map to be shown: its title, field kind, array and unit."""
 
-    name: str
     title: str
     kind: str
     value: Array
@@ -64,7 +63,7 @@ def _scalar(shown: Map) -> _View:
     varies = np.unique(value[seen]).size > 1
     legend = element(
         "div",
-        color_bar(low, high, shown.unit, shown.name) if varies else None,
+        color_bar(low, high, shown.unit) if varies else None,
         None if seen.all() else key({"unknown": "unknown"}),
     )
     facts = f"{facts}, {percent(_share(seen))} known" if seen.any() else facts
@@ -118,7 +117,7 @@ def _confidence(shown: Map) -> _View:
     facts, mean = _range(shown.value, "1"), float(np.nan_to_num(shown.value).mean(dtype=np.float64))
     if " to " in facts:
         facts += f", {number(mean)} on average"
-    return _View(pictures.of_confidence(shown.value), grey_bar(shown.name), facts)
+    return _View(pictures.of_confidence(shown.value), grey_bar(), facts)
 
 
 def _image(shown: Map) -> _View:

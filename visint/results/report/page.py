@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import visint
 from visint import io
 from visint.results.report import course, fields, origin
+from visint.results.report.legends import gradients
 from visint.results.report.markup import Markup, element, joined
 from visint.results.report.numbers import count, seconds
 from visint.results.report.setting import Setting
@@ -21,8 +22,8 @@ __all__ = ["MOST_BYTES", "SECTIONS", "report"]
 MOST_BYTES = 3_000_000
 """How large a report may be; pictures are reduced until it fits."""
 
-_SIDES = (1280, 960, 640, 400, 240)
-"""The longest side of a picture, from what is wanted to what will do."""
+_SIDE, _SMALLEST = 1280, 64
+"""The longest side of a picture: what is wanted, and what will do."""
 
 
 class Section(NamedTuple):
@@ -48,17 +49,17 @@ SECTIONS = (
 
 
 def report(result: Result) -> str:
-    """The whole report of ``result`` as the text of an HTML file, at most :data:`MOST_BYTES` long.
+    """The whole report of ``result`` as the text of an HTML file.
 
     Nothing in it asks the network for anything, and no script runs. Apart from the timings the same run
-    gives the same text. Pictures of more than 1280 pixels a side are reduced, and further where the whole
-    would be too large; the files beside the report have every pixel.
+    gives the same text. Pictures of more than 1280 pixels a side are reduced, and further until the whole
+    is at most :data:`MOST_BYTES` long; the files beside the report have every pixel.
     """
-    text = ""
-    for side in _SIDES:
+    side = _SIDE
+    text = _page(Setting(result, side))
+    while (size := len(text.encode())) > MOST_BYTES and side > _SMALLEST:
+        side = max(_SMALLEST, int(0.95 * side * (MOST_BYTES / size) ** 0.5))  # bytes go with the area
         text = _page(Setting(result, side))
-        if len(text.encode()) <= MOST_BYTES:
-            break
     return text
 
 
@@ -71,6 +72,7 @@ def _page(setting: Setting) -> str:
         title=joined([result.graph.name]),
         about=element("p", result.graph.spec.about, class_="about") if result.graph.spec.about else "",
         facts=_facts(result),
+        gradients=gradients(),
         contents=joined(
             element("li", element("a", section.title, href=f"#{section.name}")) for section, _ in filled
         ),

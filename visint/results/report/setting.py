@@ -28,9 +28,9 @@ class Setting(NamedTuple):
         camera = self.result.camera
         return unit.replace("baseline", camera.unit if camera else "relative")
 
-    def figure(self, name: str, title: str, kind: str, value: Any, unit: str | None = None) -> Markup:
-        """A map as a figure; ``name`` is one that no other figure has."""
-        shown = Map(name, title, kind, value, self.unit(kind) if unit is None else unit)
+    def figure(self, title: str, kind: str, value: Any, unit: str | None = None) -> Markup:
+        """A map as a figure; its unit is that of its kind if not given."""
+        shown = Map(title, kind, value, self.unit(kind) if unit is None else unit)
         return figure(shown, self.side)
 
     def small(self) -> Setting:
