@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 from visint.errors import GraphError, Problem
 from visint.graph.bind import bind
 from visint.graph.callees import COMMIT
 from visint.graph.graph import MAP, Graph
 from visint.graph.read import Places
+from visint.graph.rewire import rewired
 from visint.graph.spec import GraphSpec, NodeSpec, SpokeSpec, StepSpec
 from visint.names import did_you_mean, listed
 
 __all__ = ["alter"]
 
 Settings = Mapping[str, Any]
+Part = TypeVar("Part", NodeSpec, SpokeSpec, StepSpec)
 
 
 def alter(
@@ -26,9 +28,12 @@ def alter(
     Parameters
     ----------
     settings
-        ``"node.param"`` → value; a spoke's steps are called ``<spoke>_cohere`` and ``<spoke>_reconcile``.
+        ``"node.param"`` → value; a spoke's steps are called ``<spoke>_cohere`` and ``<spoke>_reconcile``, a
+        field's ``<field>_reconcile``.
     without
-        Spokes to leave out: the map passes through unchanged there.
+        Spokes to leave out: the map passes through unchanged there. What reads a spoke's other outputs
+        through an optional port or a list does without, and so do the graph's outputs and controls. The
+        variant is a plain graph, with the hub spelled out.
     control
         The name of one of the graph's ``controls``, whose settings are then made.
 
@@ -37,15 +42,15 @@ def alter(
     GraphError
         VI219 if a node, spoke or control is named that is not there; whatever binding finds else.
     """
-    spec = graph.spec
-    if control is not None:
-        spec = _set(spec, _control(spec, control))
-    if settings:
-        spec = _set(spec, settings)
+    asked = {**(_control(graph.spec, control) if control is not None else {}), **(settings or {})}
+    if asked:
+        graph = _bound(graph, _set(graph.spec, asked))
     for spoke in without:
-        spec = _without(spec, spoke)
-    if spec is graph.spec:
-        return graph
+        graph = _bound(graph, _without(graph.plain_spec, spoke))
+    return graph
+
+
+def _bound(graph: Graph, spec: GraphSpec) -> Graph:
     return bind(spec, graph.catalog, Places(str(graph.file or spec.name)), graph.file)
 
 
@@ -55,12 +60,12 @@ def _control(spec: GraphSpec, name: str) -> Settings:
     return spec.controls[name]
 
 
-def _names_nothing(what: str, name: str, known: Iterable[str]) -> GraphError:
-    near = did_you_mean(name, known)
-    problem = Problem(
-        "VI219", f"there is no {what} {name!r}", choices=f"{what}s: " + listed(known), write=near or ""
-    )
-    return GraphError(problem)
+def _names_nothing(what: str, name: str, known: Iterable[str], param: str = "") -> GraphError:
+    known = list(known)
+    near = did_you_mean(name, known) or next(iter(known), "")
+    choices = f"{what}s: " + listed(known)
+    write = f"{near}.{param}=…" if near and param else near
+    return GraphError(Problem("VI219", f"there is no {what} {name!r}", choices=choices, write=write))
 
 
 def _set(spec: GraphSpec, settings: Settings) -> GraphSpec:
@@ -77,90 +82,88 @@ def _set_one(spec: GraphSpec, name: str, param: str, value: Any) -> GraphSpec:
         node = _with(spec.nodes[name], param, value)
         return spec.model_copy(update={"nodes": {**spec.nodes, name: node}})
     spokes = spec.hub.spokes if spec.hub else {}
+    fields = spec.hub.reconcile if spec.hub else {}
     owner, _, step = name.rpartition("_")
     if name in spokes:
-        spoke = _with(spokes[name], param, value)
-    elif owner in spokes and step in ("cohere", "reconcile"):
-        inner = _with(getattr(spokes[owner], step), param, value)
-        name, spoke = owner, spokes[owner].model_copy(update={step: inner})
-    elif spec.hub and step == "reconcile" and owner in spec.hub.reconcile:
-        inner = _with(spec.hub.reconcile[owner], param, value)
-        hub = spec.hub.model_copy(update={"reconcile": {**spec.hub.reconcile, owner: inner}})
-        return spec.model_copy(update={"hub": hub})
-    else:
-        raise _names_nothing("node", name, [*spec.nodes, *spokes])
-    assert spec.hub is not None
-    hub = spec.hub.model_copy(update={"spokes": {**spokes, name: spoke}})
-    return spec.model_copy(update={"hub": hub})
+        return _with_hub(spec, spokes={**spokes, name: _with(spokes[name], param, value)})
+    if owner in spokes and step in ("cohere", "reconcile"):
+        spoke = spokes[owner].model_copy(update={step: _with(getattr(spokes[owner], step), param, value)})
+        return _with_hub(spec, spokes={**spokes, owner: spoke})
+    if owner in fields and step == "reconcile":
+        return _with_hub(spec, reconcile={**fields, owner: _with(fields[owner], param, value)})
+    raise _names_nothing("node", name, [*spec.nodes, *spokes], param)
 
 
-def _with(part: Any, param: str, value: Any) -> Any:
-    part = part if isinstance(part, NodeSpec | SpokeSpec | StepSpec) else StepSpec()
+def _with(part: Part, param: str, value: Any) -> Part:
     return part.model_copy(update={"with_": {**part.with_, param: value}})
 
 
+def _with_hub(spec: GraphSpec, **parts: Any) -> GraphSpec:
+    assert spec.hub is not None
+    return spec.model_copy(update={"hub": spec.hub.model_copy(update=parts)})
+
+
 def _without(spec: GraphSpec, spoke: str) -> GraphSpec:
-    if spec.hub is not None and spoke in spec.hub.spokes:
-        order = tuple(name for name in spec.hub.order if name != spoke)
-        spokes = {name: _unfed(one, {spoke}) for name, one in spec.hub.spokes.items() if name != spoke}
-        nodes = {name: _unfed(node, {spoke}) for name, node in spec.nodes.items()}
-        hub = spec.hub.model_copy(update={"order": order, "spokes": spokes})
-        return spec.model_copy(update={"hub": hub, "nodes": nodes})
     gone = {name for name, node in spec.nodes.items() if node.of == spoke}
     if not gone:
-        known = spec.hub.order if spec.hub else {node.of for node in spec.nodes.values() if node.of}
-        raise _names_nothing("spoke", spoke, sorted(known))
-    return _without_nodes(spec, gone)
-
-
-def _without_nodes(spec: GraphSpec, gone: set[str]) -> GraphSpec:
-    """Plain nodes taken out; who read the map from a commit among them reads the map before it."""
-    before = {}
-    for name in gone:
-        if spec.nodes[name].uses == COMMIT:
-            before[name] = str(spec.nodes[name].in_["map"]).partition(".")[0]
-    gone_for_good = gone - set(before)
+        raise _names_nothing("spoke", spoke, dict.fromkeys(node.of for node in spec.nodes.values() if node.of))
+    gone |= _mute(spec, gone)
+    before = {
+        name: str(spec.nodes[name].in_["map"]).partition(".")[0]
+        for name in gone
+        if spec.nodes[name].uses == COMMIT
+    }
+    silent = gone - set(before)
     nodes = {
-        name: _rewired(_unfed(node, gone_for_good), before)
-        for name, node in spec.nodes.items()
-        if name not in gone
+        name: rewired(_unfed(node, silent), before) for name, node in spec.nodes.items() if name not in gone
     }
-    if MAP in before:  # the last commit bears the name that the rest of the file reads
-        last = _through(MAP, before)
-        nodes = {MAP if name == last else name: _rewired(node, {last: MAP}) for name, node in nodes.items()}
+    return _called_map(spec, nodes, before).model_copy(
+        update={
+            "outputs": {name: ref for name, ref in spec.outputs.items() if _stays(ref, silent)},
+            "controls": {
+                name: {key: value for key, value in settings.items() if _stays(key, gone)}
+                for name, settings in spec.controls.items()
+            },
+        }
+    )
+
+
+def _mute(spec: GraphSpec, gone: set[str]) -> set[str]:
+    """A field's reconciler, and its commit, if all its evidence came from nodes that are gone."""
+    mute: set[str] = set()
+    for name, node in spec.nodes.items():
+        if node.uses == COMMIT and node.of is None:
+            for source in {ref.partition(".")[0] for ref in map(str, node.in_.values())} & set(spec.nodes):
+                fed = [refs for refs in spec.nodes[source].in_.values() if isinstance(refs, tuple)]
+                if fed and not any(_stays(ref, gone) for refs in fed for ref in refs):
+                    mute |= {name, source}
+    return mute
+
+
+def _called_map(spec: GraphSpec, nodes: dict[str, NodeSpec], before: Mapping[str, str]) -> GraphSpec:
+    """The last commit bears the name that the rest of the file reads; where none is left, one is written."""
+    if MAP not in before:
         return spec.model_copy(update={"nodes": nodes})
-    return spec.model_copy(update={"nodes": nodes})
+    last = MAP
+    while last in before:
+        last = before[last]
+    if nodes[last].uses != COMMIT:
+        empty = NodeSpec(uses=COMMIT, loop=nodes[last].loop, in_={"map": f"{last}.map"})
+        readers = {name: rewired(node, {last: MAP}) for name, node in nodes.items()}
+        return spec.model_copy(update={"nodes": {**readers, MAP: empty}})
+    named = {MAP if name == last else name: rewired(node, {last: MAP}) for name, node in nodes.items()}
+    return spec.model_copy(update={"nodes": named})
 
 
-def _through(name: str, before: Mapping[str, str]) -> str:
-    while name in before:
-        name = before[name]
-    return name
+def _stays(ref: str, gone: set[str]) -> bool:
+    return ref.partition(".")[0] not in gone
 
 
-def _unfed(node: Any, gone: set[str]) -> Any:
-    def stays(ref: str) -> bool:
-        return ref.partition(".")[0] not in gone
-
+def _unfed(node: NodeSpec, gone: set[str]) -> NodeSpec:
     ins = {
-        port: refs if isinstance(refs, str) else tuple(ref for ref in refs if stays(ref))
+        port: refs if isinstance(refs, str) else tuple(ref for ref in refs if _stays(ref, gone))
         for port, refs in node.in_.items()
-        if not isinstance(refs, str) or stays(refs)
+        if not isinstance(refs, str) or _stays(refs, gone)
     }
-    feedback = {port: each for port, each in node.feedback.items() if stays(each.from_)}
-    return node.model_copy(update={"in_": ins, "feedback": feedback})
-
-
-def _rewired(node: NodeSpec, before: Mapping[str, str]) -> NodeSpec:
-    def moved(ref: str) -> str:
-        name, dot, port = ref.partition(".")
-        return f"{_through(name, before)}{dot}{port}"
-
-    ins = {
-        port: moved(refs) if isinstance(refs, str) else tuple(moved(ref) for ref in refs)
-        for port, refs in node.in_.items()
-    }
-    feedback = {
-        port: each.model_copy(update={"from_": moved(each.from_)}) for port, each in node.feedback.items()
-    }
+    feedback = {port: each for port, each in node.feedback.items() if _stays(each.from_, gone)}
     return node.model_copy(update={"in_": ins, "feedback": feedback})

@@ -2,172 +2,125 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
+from typing import Any
 
 import networkx as nx
+from pydantic import ValidationError
 
 from visint.errors import Problem
-from visint.graph.callees import COMMIT
+from visint.graph.callees import BEGIN, COMMIT
+from visint.graph.complaints import shown
 from visint.graph.draft import Draft
 from visint.graph.graph import INPUTS, Edge, Graph, Node
+from visint.graph.loop_checks import LOOP_RULES, loops_exist
 from visint.module import PortSpec
 from visint.names import did_you_mean, listed
 
 __all__ = ["RULES", "loops_exist"]
 
-Rule = Callable[[Graph, Draft], Iterator[Problem]]
+Found = Iterator[Problem]
+Rule = Callable[[Graph, Draft], Found]
+Wire = tuple[str, str]
 
 
-def loops_exist(graph: Graph, draft: Draft) -> Iterator[Problem]:
-    """Every loop that is named is declared, and loops lie inside each other without a circle."""
-    named: list[tuple[tuple[str, ...], str | None]] = [
-        (("nodes", name, "loop"), node.loop) for name, node in graph.nodes.items()
-    ]
-    named += [(("loops", name, "inside"), loop.spec.inside) for name, loop in graph.loops.items()]
-    if graph.spec.hub:
-        named.append((("hub", "loop"), graph.spec.hub.loop))
-    for path, loop in named:
-        if loop is not None and loop not in graph.loops:
-            near = did_you_mean(loop, graph.loops)
-            write = f"{path[-1]}: {near}" if near else f"loops: {{{loop}: {{times: 10}}}}"
-            choices = "loops: " + listed(graph.loops)
-            yield Problem("VI208", f"there is no loop {loop!r}", draft.where(*path), choices, write)
-    inside = nx.DiGraph(
-        (name, loop.spec.inside) for name, loop in graph.loops.items() if loop.spec.inside is not None
-    )
-    for circle in nx.simple_cycles(inside):
-        found = "loops lie inside each other in a circle: " + " in ".join([*circle, circle[0]])
-        yield Problem("VI208", found, draft.where("loops", circle[0], "inside"))
-
-
-def loops_are_bounded(graph: Graph, draft: Draft) -> Iterator[Problem]:
-    """A turn loop has ``times``; a pyramid has ``coarsest`` or ``levels``; neither has the other's."""
-    for name, loop in graph.loops.items():
-        spec, where = loop.spec, draft.where("loops", name)
-        if loop.pyramid and (spec.coarsest is None) == (spec.levels is None):
-            found = f"the pyramid {name!r} wants one of 'coarsest' and 'levels'"
-            yield Problem("VI210", found, where, write="coarsest: 8")
-        if not loop.pyramid and spec.times is None:
-            yield Problem("VI210", f"the loop {name!r} has no bound", where, write="times: 20")
-        wrong = ("times", "until") if loop.pyramid else ("coarsest", "levels", "between")
-        for key in wrong:
-            if getattr(spec, key):
-                owner = "a pyramid has" if loop.pyramid else "only a pyramid ('over: pyramid') has"
-                found = f"{owner} no {key!r}" if loop.pyramid else f"{owner} {key!r}"
-                yield Problem("VI210", found, draft.where("loops", name, key, key=True))
-
-
-def no_pyramid_in_a_pyramid(graph: Graph, draft: Draft) -> Iterator[Problem]:
-    """Levels are levels of the whole run: a pyramid lies in no other pyramid."""
-    for name, loop in graph.loops.items():
-        outer = graph.pyramid_around(loop.spec.inside)
-        if loop.pyramid and outer is not None:
-            found = f"the pyramid {name!r} lies inside the pyramid {outer!r}"
-            yield Problem("VI217", found, draft.where("loops", name, "inside"))
-
-
-def ends_are_sound(graph: Graph, draft: Draft) -> Iterator[Problem]:
-    """``until`` names ``change_of`` with ``below``, or ``holds`` with a flag, of a node inside the loop."""
-    for name, loop in graph.loops.items():
-        if loop.until is None:
-            continue
-        spec, path = loop.until.spec, ("loops", name, "until")
-        if (spec.change_of is None) == (spec.holds is None):
-            found = "'until' wants one of 'change_of' and 'holds'"
-            yield Problem(
-                "VI216", found, draft.where(*path), write="until: {change_of: node.port, below: 1.0e-3}"
-            )
-        if (spec.change_of is None) != (spec.below is None):
-            yield Problem(
-                "VI216", "'change_of' and 'below' go together", draft.where(*path), write="below: 1.0e-3"
-            )
-        for key, edge in (("change_of", loop.until.change_of), ("holds", loop.until.holds)):
-            yield from _sound_end(graph, draft, name, key, edge)
-
-
-def _sound_end(graph: Graph, draft: Draft, loop: str, key: str, edge: Edge | None) -> Iterator[Problem]:
-    if edge is None:
-        return
-    where = draft.where("loops", loop, "until", key)
-    node = graph.nodes.get(edge.source.node)
-    if node is None or loop not in graph.loops_around(node.loop):
-        inner = [name for name, one in graph.nodes.items() if loop in graph.loops_around(one.loop)]
-        found = f"{edge.source} does not change inside the loop {loop!r}"
-        yield Problem("VI216", found, where, "nodes inside: " + listed(inner))
-    elif key == "holds" and edge.kind.name not in ("Flag", "Scalar"):
-        yield Problem("VI216", f"{edge.source} is {edge.kind.name}; 'holds' wants a Flag", where)
-
-
-def no_circle_without_feedback(graph: Graph, draft: Draft) -> Iterator[Problem]:
-    """The in-edges alone form no circle."""
+def no_circle_without_feedback(graph: Graph, draft: Draft) -> Found:
+    """The in-edges, and the edges that feedback starts from, form no circle."""
     wires = _wires(graph)
+    rank = {name: i for i, name in enumerate(graph.nodes)}
     for component in nx.strongly_connected_components(wires):
-        first = min(component, key=list(graph.nodes).index)
+        first = min(component, key=rank.__getitem__)
         if len(component) == 1 and not wires.has_edge(first, first):
             continue
         circle = [edge[0] for edge in nx.find_cycle(wires.subgraph(component), first)]
         last, target = circle[-1], circle[0]
-        port, edge = next(pe for pe in graph.nodes[target].edges() if pe[1].source.node == last)
+        path, port, edge = next(one for one in _reads(graph.nodes[target]) if one[2].source.node == last)
         found = "nodes feed each other in a circle: " + " → ".join([*circle, target])
-        write = f"feedback: {{{port}: {{from: {edge.source}, start: none}}}}   (instead of 'in', on {target!r})"
-        yield Problem("VI207", found, draft.where("nodes", target, "in", port), write=write)
+        start = "none" if graph.nodes[target].callee.inputs[port].optional else "0"
+        write = (
+            f"feedback: {{{port}: {{from: {edge.source}, start: {start}}}}}   (on {target!r}, instead of 'in')"
+        )
+        if path[0] == "feedback":
+            write = "start: none   (or a reference that does not depend on this node)"
+        yield Problem("VI207", found, draft.where("nodes", target, *path), write=write)
+
+
+def _reads(node: Node) -> Iterator[tuple[tuple[str, ...], str, Edge]]:
+    """(path in the node, port, edge) of all that a node waits for before it first runs."""
+    yield from ((("in", port), port, edge) for port, edge in node.edges())
+    for port, feedback in node.feedback.items():
+        if isinstance(feedback.start, Edge):
+            yield ("feedback", port, "start"), port, feedback.start
 
 
 def _wires(graph: Graph) -> nx.DiGraph:
     wires = nx.DiGraph()
     wires.add_nodes_from(graph.nodes)
-    wires.add_edges_from(
-        (edge.source.node, name)
-        for name, node in graph.nodes.items()
-        for _, edge in node.edges()
-        if edge.source.node != INPUTS
-    )
+    for name, node in graph.nodes.items():
+        wires.add_edges_from((e.source.node, name) for _, _, e in _reads(node) if e.source.node != INPUTS)
     return wires
 
 
-def no_path_leaves_a_loop_and_returns(graph: Graph, draft: Draft) -> Iterator[Problem]:
+def no_path_leaves_a_loop_and_returns(graph: Graph, draft: Draft) -> Found:
     """A loop is one step of what is around it: no path of in-edges leaves it and comes back in one turn."""
     wires = _wires(graph)
     if not nx.is_directed_acyclic_graph(wires):
         return
-    for loop in graph.loops:
-        inner = {name for name, node in graph.nodes.items() if loop in graph.loops_around(node.loop)}
-        for leaving, outside in [(a, b) for a, b in wires.edges if a in inner and b not in inner]:
-            after = {outside} | nx.descendants(wires, outside)
-            returning = sorted(after & inner, key=list(graph.nodes).index)
-            if returning:
-                path = nx.shortest_path(wires, outside, returning[0])
-                found = f"a path leaves the loop {loop!r} and comes back: " + " → ".join([leaving, *path])
-                write = f"loop: {graph.nodes[leaving].loop}   (on {outside!r})"
-                yield Problem("VI211", found, draft.where("nodes", outside), write=write)
-                break
+    chains = {name: graph.loops_around(node.loop) for name, node in graph.nodes.items()}
+    for block in (None, *graph.loops):
+        inner = [name for name, chain in chains.items() if block is None or block in chain]
+        depth = 0 if block is None else len(graph.loops_around(block))
+        items = {name: (chains[name][depth : depth + 1] or (name, "")) for name in inner}
+        steps = nx.DiGraph()
+        for source, target in wires.subgraph(inner).edges:
+            if items[source] != items[target]:
+                steps.add_edge(items[source], items[target], wire=(source, target))
+        for component in nx.strongly_connected_components(steps):
+            if len(component) > 1:
+                circle = nx.find_cycle(steps.subgraph(component), min(component))
+                yield _leaving(graph, draft, [steps.edges[a, b]["wire"] for a, b in circle])
 
 
-def restarts_are_outer_loops(graph: Graph, draft: Draft) -> Iterator[Problem]:
-    """``restart`` names a loop around the one that the feedback edge goes round in."""
-    for name, node in graph.nodes.items():
-        for port, feedback in node.feedback.items():
-            outer = graph.loops_around(feedback.loop)[:-1]
-            if feedback.restart is not None and feedback.restart not in outer:
-                found = f"{feedback.restart!r} is no loop around {feedback.loop!r}, where this value goes round"
-                where = draft.where("nodes", name, "feedback", port, "restart")
-                yield Problem("VI208", found, where, "loops around it: " + listed(outer))
+def _leaving(graph: Graph, draft: Draft, circle: Sequence[Wire]) -> Problem:
+    """The problem of a circle of loops and nodes, each of whose ``circle`` of wires leads to the next."""
+    leaving = next(i for i, (source, target) in enumerate(circle) if _leaves(graph, source, target))
+    turned = [*circle[leaving:], *circle[:leaving]]
+    source, outside = turned[0]
+    loop = next(one for one in graph.loops_around(graph.nodes[source].loop) if _is_left(graph, one, outside))
+    chained = all(before[1] == after[0] for before, after in pairwise(turned))
+    said = " → ".join([source, *(wire[1] for wire in turned)])
+    if not chained:
+        said = ", ".join(f"{before} feeds {after}" for before, after in turned)
+    found = f"a path leaves the loop {loop!r} and comes back: {said}"
+    write = f"loop: {graph.nodes[source].loop}   (on {outside!r})"
+    return Problem("VI211", found, draft.where("nodes", outside, key=True), write=write)
 
 
-def starts_fit(graph: Graph, draft: Draft) -> Iterator[Problem]:
-    """A feedback edge's start fits its port: a plane for depth or disparity, a number for what holds them."""
-    for name, node in graph.nodes.items():
-        for port, feedback in node.feedback.items():
-            said = _start_fault(graph, node.callee.inputs[port], feedback.start, feedback.loop)
-            if said:
-                path = ("nodes", name, "feedback", port)
-                choices = "starts: none, a number, plane, or node.port from outside the loop"
-                yield Problem("VI215", said, draft.where(*path), choices, "start: 0")
+def _leaves(graph: Graph, source: str, target: str) -> bool:
+    return any(_is_left(graph, loop, target) for loop in graph.loops_around(graph.nodes[source].loop))
+
+
+def _is_left(graph: Graph, loop: str, target: str) -> bool:
+    return loop not in graph.loops_around(graph.nodes[target].loop)
 
 
 _NUMBERS = frozenset(
     {"Image", "Depth", "Disparity", "Relief", "Confidence", "Sigma", "Mask", "Boundaries", "Regions"}
 )
+_PLANES = ("Depth", "Disparity")
+
+
+def starts_fit(graph: Graph, draft: Draft) -> Found:
+    """A start fits its port: a plane for depth or disparity, a number for what holds them."""
+    choices = "starts: none, a number, plane, or node.port from outside the loop"
+    for name, node in graph.nodes.items():
+        for port, feedback in node.feedback.items():
+            spec = node.callee.inputs[port]
+            said = _start_fault(graph, spec, feedback.start, feedback.loop)
+            if said:
+                where = draft.where("nodes", name, "feedback", port, "start")
+                yield Problem("VI215", said, where, choices, f"start: {_right_start(spec)}")
 
 
 def _start_fault(graph: Graph, port: PortSpec, start: float | str | Edge | None, loop: str) -> str:
@@ -178,44 +131,53 @@ def _start_fault(graph: Graph, port: PortSpec, start: float | str | Edge | None,
     if start is None:
         return "" if port.optional else f"{port.name!r} must be fed, so its feedback wants a start"
     if start == "plane":
-        fits = port.kind in ("Depth", "Disparity") and not port.evidence
+        fits = port.kind in _PLANES and not port.evidence
         return "" if fits else f"'plane' is a start for Depth or Disparity; {port.name!r} is {port}"
-    fits = port.kind in _NUMBERS | {"Scalar", "Flag"} and not port.evidence
+    fits = port.kind in _NUMBERS and not port.evidence and not port.many
     return "" if fits else f"a number is no start for {port.name!r}, which is {port}"
 
 
-def levels_lie_in_a_pyramid(graph: Graph, draft: Draft) -> Iterator[Problem]:
-    """``levels`` and ``at`` are for nodes in a pyramid, and within its levels where their number is given."""
+def _right_start(port: PortSpec) -> str:
+    if port.optional:
+        return "none"
+    if port.kind in _NUMBERS and not port.evidence and not port.many:
+        return "plane" if port.kind in _PLANES else "0"
+    return f"node.port   (of a node outside the loop that gives {port})"
+
+
+def the_map_starts_with_its_fields(graph: Graph, draft: Draft) -> Found:
+    """``start`` of a hub names fields that the map stores, each with a start that it can have."""
     for name, node in graph.nodes.items():
-        asked = [("levels", level) for level in node.levels or ()] + [("at", level) for level in node.at]
-        pyramid = graph.pyramid_around(node.loop)
-        count = graph.loops[pyramid].spec.levels if pyramid else None
-        for key, level in asked:
-            if pyramid is None or level < 0 or (count is not None and level >= count):
-                found = "lies in no pyramid" if pyramid is None else f"{pyramid!r} has no level {level}"
-                where = draft.where("nodes", name, key)
-                yield Problem("VI217", f"{name!r} asks for level {level}, but {found}", where)
-                break
+        for field, start in dict(node.params).items() if node.callee.id == BEGIN else ():
+            kind = draft.fields.get(field)
+            where = draft.where("nodes", name, "with", field, key=kind is None)
+            if kind is None:
+                near = did_you_mean(field, draft.fields) or "depth"
+                found, known = f"the map stores no field {field!r}", "fields: " + listed(draft.fields)
+                yield Problem("VI215", found, where, known, f"{near}: {shown(start).strip(chr(39))}")
+            elif start == "plane" and kind.name not in _PLANES:
+                found = f"'plane' is a start for Depth or Disparity; {field!r} is {kind.name}"
+                yield Problem("VI215", found, where, "starts: none, a number, or node.port", f"{field}: none")
+            elif not (start in ("none", "plane") or isinstance(start, int | float)):
+                found = f"{shown(start)} is no start for {field!r}"
+                yield Problem("VI215", found, where, "starts: none, a number, plane", f"{field}: none")
 
 
-def limited_nodes_feed_optional_ports(graph: Graph, draft: Draft) -> Iterator[Problem]:
+def limited_nodes_feed_optional_ports(graph: Graph, draft: Draft) -> Found:
     """Where a node does not run its outputs are None: only optional ports, and lists, may take them."""
     for name, node in graph.nodes.items():
-        for port, edge in [*node.edges(), *((p, f.edge) for p, f in node.feedback.items())]:
+        read = [("in", port, edge) for port, edge in node.edges()]
+        read += [("feedback", port, feedback.edge) for port, feedback in node.feedback.items()]
+        for key, port, edge in read:
             source = graph.nodes.get(edge.source.node)
-            if source is None or source.levels is None or _runs_less(node, source, graph):
-                continue
             spec = node.callee.inputs[port]
-            if not (spec.optional or spec.many):
-                levels = f"[{listed(map(str, source.levels))}]"
-                found = f"{source.name!r} runs at levels {levels} only; {port!r} must always be fed"
-                key = "in" if port in node.ins else "feedback"
-                yield Problem(
-                    "VI213",
-                    found,
-                    draft.where("nodes", name, key, port),
-                    write=f"levels: {levels}   (on {name!r})",
-                )
+            if source is None or source.levels is None or spec.optional or spec.many:
+                continue
+            if not _runs_less(node, source, graph):
+                levels = f"[{listed(map(str, source.levels), none='')}]"
+                found = f"{source.name!r} runs at levels {levels} only, and {port!r} must always be fed"
+                write = f"levels: {levels}   (on {name!r})"
+                yield Problem("VI213", found, draft.where("nodes", name, key, port), write=write)
 
 
 def _runs_less(node: Node, source: Node, graph: Graph) -> bool:
@@ -225,7 +187,7 @@ def _runs_less(node: Node, source: Node, graph: Graph) -> bool:
     return node.levels is not None and set(node.levels) <= set(source.levels or ())
 
 
-def writers_of_the_map_stand_in_order(graph: Graph, draft: Draft) -> Iterator[Problem]:
+def writers_of_the_map_stand_in_order(graph: Graph, draft: Draft) -> Found:
     """Each state of the map is committed to once; two commits to one state would be in no order."""
     writers: dict[object, str] = {}
     for name, node in graph.nodes.items():
@@ -239,36 +201,58 @@ def writers_of_the_map_stand_in_order(graph: Graph, draft: Draft) -> Iterator[Pr
             yield Problem("VI212", found, where, write=f"map: {first}.map")
 
 
-def controls_name_parameters(graph: Graph, draft: Draft) -> Iterator[Problem]:
-    """A control sets parameters that there are."""
+def controls_set_parameters(graph: Graph, draft: Draft) -> Found:
+    """A control sets parameters that there are, to values that they can have."""
     for control, settings in graph.spec.controls.items():
-        for key in settings:
-            name, _, param = key.partition(".")
-            node = graph.nodes.get(name)
-            where = draft.where("controls", control, key)
-            if node is None:
-                near = did_you_mean(name, graph.nodes)
-                write = f"{near}.{param}" if near else ""
-                yield Problem(
-                    "VI219", f"there is no node {name!r}", where, "nodes: " + listed(graph.nodes), write
-                )
-            elif node.callee.module and param not in node.callee.module.Params.model_fields:
-                known = node.callee.module.Params.model_fields
-                found = f"{node.callee.id} has no parameter {param!r}"
-                yield Problem("VI219", found, where, "parameters: " + listed(known))
+        for key, value in settings.items():
+            said, choices, write = _control_fault(graph, key, value)
+            if said:
+                where = draft.where("controls", control, key, key=True)
+                yield Problem("VI219", said, where, choices, f"{control}: {{{write}: {shown(value)}}}")
+
+
+def _control_fault(graph: Graph, key: str, value: Any) -> tuple[str, str, str]:
+    name, _, param = key.partition(".")
+    with_params = {one: _names(node) for one, node in graph.nodes.items() if _names(node)}
+    node = graph.nodes.get(name)
+    if node is None:
+        near = did_you_mean(name, with_params)
+        right = did_you_mean(param, with_params[near]) or with_params[near][0] if near else "parameter"
+        return f"there is no node {name[:70]!r}", "nodes: " + listed(with_params), f"{near or 'node'}.{right}"
+    known = _names(node)
+    if node.callee.module is None or param not in known:
+        found = f"{name!r} ({node.callee.id}) has no parameter {param[:70]!r}"
+        near = did_you_mean(param, known) or next(iter(known), None)
+        return (
+            found,
+            f"parameters of {name!r}: " + listed(known),
+            f"{name}.{near}" if near else "node.parameter",
+        )
+    try:
+        node.callee.module.Params.model_validate({**_set_already(node), param: value})
+    except ValidationError as error:
+        said = str(error.errors(include_input=False, include_url=False)[0]["msg"])
+        found = f"found {shown(value)}; " + said.replace("Input should be", "should be")
+        return found, f"parameters of {name!r}: " + listed(known), key
+    return "", "", ""
+
+
+def _names(node: Node) -> list[str]:
+    return list(node.callee.module.Params.model_fields) if node.callee.module else []
+
+
+def _set_already(node: Node) -> dict[str, Any]:
+    return {name: getattr(node.params, name) for name in _names(node)}
 
 
 RULES: tuple[Rule, ...] = (
-    loops_are_bounded,
-    no_pyramid_in_a_pyramid,
-    ends_are_sound,
+    *LOOP_RULES,
     no_circle_without_feedback,
     no_path_leaves_a_loop_and_returns,
-    restarts_are_outer_loops,
     starts_fit,
-    levels_lie_in_a_pyramid,
+    the_map_starts_with_its_fields,
     limited_nodes_feed_optional_ports,
     writers_of_the_map_stand_in_order,
-    controls_name_parameters,
+    controls_set_parameters,
 )
-"""Every rule but :func:`loops_exist`, which comes first; in the order in which a reader would meet them."""
+"""Every rule but :func:`loops_exist`, which comes first; the problems are told in the order of the file."""

@@ -39,7 +39,7 @@ def complaints(error: ValidationError, data: Any, where: Finder) -> list[Problem
     found: dict[Path, Problem] = {}
     for item in error.errors(include_input=False, include_url=False):
         path = _path_in(data, item["loc"], item["type"])
-        if item["type"] == "string_type" and isinstance(_at(data, path), list):
+        if item["loc"][-1:] == ("str",) and isinstance(_at(data, path), list):
             continue  # text or a list may stand here; what is wrong with the list is told by itself
         if path not in found:
             found[path] = _problem(item, path, data, where)

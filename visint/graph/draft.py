@@ -67,24 +67,52 @@ class Draft:
         """The reference spelled by ``ref`` and the port it means; None, with a problem noted, if none."""
         parsed = PortRef.parse(ref)
         if parsed is None:
-            self.say("VI202", f"{ref!r} is no reference; one is written node.port", where, self._nodes())
+            found = f"{ref[:70]!r} is no reference; one is written node.port"
+            self._say_lost(found, where, self._nodes(), self._meant(ref))
             return None
         if parsed.node == INPUTS:
             return self._from_input(parsed, where)
         if parsed.node not in self.spec.nodes:
             near = did_you_mean(parsed.node, [*self.spec.nodes, INPUTS])
-            write = f"{near}.{parsed.port}" if near else ""
-            self.say("VI202", f"there is no node {parsed.node!r}", where, self._nodes(), write)
+            write = self._port_near(near, parsed.port) if near else self._giving(parsed.port)
+            self._say_lost(f"there is no node {parsed.node!r}", where, self._nodes(), write)
             return None
         return self._from_node(parsed, where)
+
+    def _say_lost(self, found: str, where: Where, choices: str, ref: str) -> None:
+        """Notes a reference that points nowhere; ``ref`` is what was meant, if anything is near."""
+        key = where.path.rpartition(".")[2]
+        self.say("VI202", found, where, choices, ref if key.isdigit() else f"{key}: {ref}")
+
+    def _meant(self, text: str) -> str:
+        """What a text that is no reference was meant to be: an input, or an output of a node."""
+        if text in self.spec.inputs:
+            return f"{INPUTS}.{text}"
+        near = did_you_mean(text, [*self.spec.nodes, *self.spec.inputs])
+        if near in self.spec.inputs:
+            return f"{INPUTS}.{near}"
+        return self._port_near(near, "") if near else self._giving(text)
+
+    def _port_near(self, node: str, port: str) -> str:
+        """The output of ``node`` that ``port`` most likely means; its first one if none is near."""
+        callee = self.callees.get(node)
+        known = self.spec.inputs if node == INPUTS else callee.outputs if callee else ()
+        return f"{node}.{did_you_mean(port, known) or next(iter(known), 'port')}"
+
+    def _giving(self, port: str) -> str:
+        """A reference to an input, or an output, whose name is (nearly) ``port``."""
+        by_port = {out: f"{node}.{out}" for node, callee in self.callees.items() for out in callee.outputs}
+        by_port |= {name: f"{INPUTS}.{name}" for name in self.spec.inputs}
+        return by_port.get(did_you_mean(port, by_port) or "", "node.port")
 
     def _from_input(self, ref: PortRef, where: Where) -> tuple[PortRef, PortSpec] | None:
         if ref.port in self.spec.inputs:
             return ref, self.input_port(ref.port)
-        choices = "inputs: " + listed(f"{name}: {text}" for name, text in self.spec.inputs.items())
         near = did_you_mean(ref.port, self.spec.inputs)
-        write = f"{INPUTS}.{near}" if near else ""
-        self.say("VI202", f"there is no input {ref.port!r}", where, choices, write)
+        write = f"{INPUTS}.{near}" if near else self._giving(ref.port)
+        if write == "node.port":
+            write = f"{INPUTS}.{ref.port}   (with inputs: {{{ref.port}: Image}})"
+        self._say_lost(f"the graph has no input {ref.port!r}", where, self.outputs_of(INPUTS), write)
         return None
 
     def _from_node(self, ref: PortRef, where: Where) -> tuple[PortRef, PortSpec] | None:
@@ -93,17 +121,15 @@ class Draft:
             return None
         if ref.port in callee.outputs:
             return ref, callee.outputs[ref.port]
-        near = did_you_mean(ref.port, callee.outputs)
-        only = next(iter(callee.outputs)) if len(callee.outputs) == 1 else None
-        write = f"{ref.node}.{near or only}" if near or only else ""
         found = f"{ref.node!r} ({callee.id}) has no output {ref.port!r}"
-        self.say("VI202", found, where, self.outputs_of(ref.node), write)
+        self._say_lost(found, where, self.outputs_of(ref.node), self._port_near(ref.node, ref.port))
         return None
 
     def outputs_of(self, node: str) -> str:
         """The outputs of a node (or of ``inputs``) as the choices of a message."""
         if node == INPUTS:
-            return "inputs: " + listed(f"{name}: {text}" for name, text in self.spec.inputs.items())
+            inputs = ((name, InputSpec.parse(text)) for name, text in self.spec.inputs.items())
+            return "inputs: " + listed(f"{name}: {declared}" for name, declared in inputs)
         callee = self.callees[node]
         ports = listed(f"{name}: {spec.kind}" for name, spec in callee.outputs.items())
         return f"outputs of {node!r} ({callee.id}): {ports}"

@@ -12,7 +12,7 @@ from visint.graph.read import read_graph
 from visint.names import did_you_mean, is_name, listed
 from visint.registry import Catalog, installed
 
-__all__ = ["load", "load_named", "parse_graph"]
+__all__ = ["find_named", "load", "load_named", "parse_graph"]
 
 
 def load(source: str | PathLike[str] | Graph, catalog: Catalog | None = None) -> Graph:
@@ -42,6 +42,11 @@ def load(source: str | PathLike[str] | Graph, catalog: Catalog | None = None) ->
 
 def load_named(name: str, catalog: Catalog, calling: tuple[str, ...] = ()) -> Graph:
     """The installed graph ``name``; ``calling`` are the graphs being bound around it."""
+    return _load_file(find_named(name, catalog), catalog, calling)
+
+
+def find_named(name: str, catalog: Catalog) -> Path:
+    """The file of the installed graph ``name``; :class:`GraphError` VI108 if there is none."""
     known = catalog.graphs()
     if name not in known:
         near = did_you_mean(name, known)
@@ -49,7 +54,7 @@ def load_named(name: str, catalog: Catalog, calling: tuple[str, ...] = ()) -> Gr
         raise GraphError(
             Problem("VI108", f"no graph is named {name!r}", choices="graphs: " + listed(known), write=write)
         )
-    return _load_file(known[name], catalog, (*calling, name))
+    return known[name]
 
 
 def _load_file(path: Path, catalog: Catalog, calling: tuple[str, ...] = ()) -> Graph:
