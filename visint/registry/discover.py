@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import Distribution, EntryPoint, distributions
 from typing import NamedTuple
 
 from visint.errors import PluginError
@@ -32,11 +32,21 @@ class Entry(NamedTuple):
 def discover(group: str) -> Mapping[str, tuple[Entry, ...]]:
     """Every entry of a group by name, in the order of names; more than one where distributions clash."""
     found: dict[str, list[Entry]] = defaultdict(list)
-    for point in entry_points(group=group):
-        dist = point.dist
-        name, version = (dist.name, dist.version) if dist else ("unknown", "")
-        found[point.name].append(Entry(point.name, point, name, version))
+    for distribution in distributions():
+        for entry in _entries(distribution, group):
+            found[entry.name].append(entry)
     return {name: _distinct(found[name]) for name in sorted(found)}
+
+
+def _entries(distribution: Distribution, group: str) -> list[Entry]:
+    """The entries of one distribution; none if its metadata are broken, which must not hide the others."""
+    try:
+        points = distribution.entry_points.select(group=group)
+        about = distribution.metadata if points else {}
+        name, version = (about[key] if key in about else "" for key in ("Name", "Version"))
+        return [Entry(point.name, point, name or "unknown", version) for point in points]
+    except (OSError, TypeError, ValueError, LookupError):
+        return []
 
 
 def _distinct(entries: Iterable[Entry]) -> tuple[Entry, ...]:

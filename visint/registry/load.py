@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from inspect import isabstract
 from typing import Any
 
 import pluggy
@@ -73,15 +74,16 @@ def load_plugin(name: str, origin: str, target: object) -> Plugin:
     manager.add_hookspecs(hookspecs)
     try:
         manager.register(target, name)
+        manager.check_pending()
         _refuse_unknown_hooks(target)
         hook = manager.hook
         return Plugin(
             name,
             origin,
-            _by_name(each for given in hook.visint_modules() for each in given),
-            {kind.name: _own_kind(name, kind) for given in hook.visint_fields() for kind in given},
-            {policy: steps for given in hook.visint_policies() for policy, steps in given.items()},
-            {kind: writer for given in hook.visint_writers() for kind, writer in given.items()},
+            _by_name(each for given in _given(hook.visint_modules) for each in given),
+            {kind.name: _own_kind(name, kind) for given in _given(hook.visint_fields) for kind in given},
+            dict(_policy(item) for given in _given(hook.visint_policies) for item in given.items()),
+            {kind: writer for given in _given(hook.visint_writers) for kind, writer in given.items()},
             hook,
         )
     except (Exception, SystemExit) as reason:
@@ -102,6 +104,14 @@ def _refuse_unknown_hooks(target: object) -> None:
             raise ValueError(f"{name!r} is not marked with @hookimpl")
 
 
+def _given(hook: pluggy.HookCaller) -> list[Any]:
+    """What a hook gave; pluggy drops None, so that a forgotten ``return`` would be lost silently."""
+    given: list[Any] = hook()
+    if hook.get_hookimpls() and not given:
+        raise ValueError(f"{hook.name} gave nothing; does it return?")
+    return given
+
+
 def _by_name(modules: Iterable[Any]) -> dict[str, type[AnyModule]]:
     found: dict[str, type[AnyModule]] = {}
     for module in modules:
@@ -111,11 +121,27 @@ def _by_name(modules: Iterable[Any]) -> dict[str, type[AnyModule]]:
             raise ValueError(f"module name {module.name!r} of {module.__qualname__} is taken or no name")
         if not hasattr(module, "Inputs"):
             raise TypeError(f"{module.__qualname__} does not say Module[Params, Inputs, Outputs]")
+        if isabstract(module):
+            raise TypeError(f"{module.__qualname__} has no run")
         found[module.name] = module
     return dict(sorted(found.items()))
 
 
+def _policy(item: tuple[str, Any]) -> tuple[str, Mapping[str, Mapping[str, Any]]]:
+    """A policy, if it has the form kind → "cohere" or "reconcile" → step."""
+    name, kinds = item
+    steps = [(what, step) for each in kinds.values() for what, step in each.items()]
+    for what, step in steps:
+        if what not in ("cohere", "reconcile") or not {*step} <= {"uses", "with", "in"}:
+            raise ValueError(
+                f"policy {name!r}: a step is 'cohere' or 'reconcile' with uses, with, in; not {what!r}"
+            )
+    return name, kinds
+
+
 def _own_kind(plugin: str, kind: FieldKind) -> FieldKind:
+    if not isinstance(kind, FieldKind):
+        raise TypeError(f"visint_fields gave {kind!r}, which is no FieldKind")
     if not kind.name.startswith(f"{plugin}."):
         raise ValueError(f"field kind {kind.name!r} must be named '{plugin}.{kind.name.split('.')[-1]}'")
     return kind
