@@ -42,9 +42,12 @@ def _entries(distribution: Distribution, group: str) -> list[Entry]:
     """The entries of one distribution; none if its metadata are broken, which must not hide the others."""
     try:
         points = distribution.entry_points.select(group=group)
-        about = distribution.metadata if points else {}
-        name, version = (about[key] if key in about else "" for key in ("Name", "Version"))
-        return [Entry(point.name, point, name or "unknown", version) for point in points]
+        if not points:
+            return []
+        about = distribution.metadata
+        version = about["Version"] if "Version" in about else ""  # noqa: SIM401 - metadata have no get
+        name = about["Name"] if "Name" in about else "unknown"  # noqa: SIM401
+        return [Entry(point.name, point, name, version) for point in points]
     except (OSError, TypeError, ValueError, LookupError):
         return []
 
