@@ -12,9 +12,9 @@ __all__ = ["write_all"]
 def write_all(folder: Path) -> None:
     """Writes every generated page into ``folder``, leaving pages that did not change alone."""
     folder.mkdir(parents=True, exist_ok=True)
-    pages = {"errors": errors(), "modules": modules(), "hooks": hooks(), "kinds": kinds(), "cli": command_line()}
-    for name, lines in pages.items():
-        text = "\n".join(lines) + "\n"
+    makers = {"errors": errors, "modules": modules, "hooks": hooks, "kinds": kinds, "cli": command_line}
+    for name, lines in makers.items():
+        text = "\n".join(lines()) + "\n"
         path = folder / f"{name}.md"
         if not path.exists() or path.read_text() != text:
             path.write_text(text)
@@ -55,7 +55,8 @@ def hooks() -> Iterator[str]:
     yield f"# Hooks\n\n```text\n{inspect.cleandoc(hookspecs.__doc__ or '')}\n```"
     for name, hook in vars(hookspecs).items():
         if name.startswith("visint_"):
-            yield f"\n## {name}\n\n```python\ndef {name}{inspect.signature(hook)}\n```\n\n{inspect.getdoc(hook)}"
+            signature = f"```python\ndef {name}{inspect.signature(hook)}\n```"
+            yield f"\n## {name}\n\n{signature}\n\n{inspect.getdoc(hook)}"
 
 
 def kinds() -> Iterator[str]:

@@ -122,7 +122,7 @@ class Context:
 
 P = TypeVar("P", bound=Params)
 I = TypeVar("I", bound=Ports)  # noqa: E741 - the contract reads Module[P, I, O]
-O = TypeVar("O", bound=Ports)  # noqa: E741
+O = TypeVar("O", bound=Ports)  # noqa: E741 - the contract reads Module[P, I, O]
 
 
 class Module(ABC, Generic[P, I, O]):

@@ -51,7 +51,7 @@ class DepthFromDisparity(Module[NoParams, DisparityAndCamera, DepthOnly]):
 
     name = "depth"
 
-    def run(self, inputs: DisparityAndCamera, ctx: Context) -> DepthOnly:  # noqa: ARG002
+    def run(self, inputs: DisparityAndCamera, ctx: Context) -> DepthOnly:
         """Depth of each pixel whose disparity is known."""
         return DepthOnly(depth=depth_from_disparity(inputs.disparity, inputs.camera))
 
@@ -61,7 +61,7 @@ class DisparityFromDepth(Module[NoParams, DepthAndCamera, DisparityOnly]):
 
     name = "disparity"
 
-    def run(self, inputs: DepthAndCamera, ctx: Context) -> DisparityOnly:  # noqa: ARG002
+    def run(self, inputs: DepthAndCamera, ctx: Context) -> DisparityOnly:
         """Disparity of each pixel whose depth is known and positive."""
         return DisparityOnly(disparity=disparity_from_depth(inputs.depth, inputs.camera))
 
@@ -71,6 +71,6 @@ class NormalsFromDepth(Module[NoParams, DepthAndCamera, NormalsOnly]):
 
     name = "normals"
 
-    def run(self, inputs: DepthAndCamera, ctx: Context) -> NormalsOnly:  # noqa: ARG002
+    def run(self, inputs: DepthAndCamera, ctx: Context) -> NormalsOnly:
         """Unit normals; NaN where depth or both of its neighbours along an axis are unknown."""
         return NormalsOnly(normals=normals_from_depth(inputs.depth, inputs.camera))

@@ -49,7 +49,7 @@ def _version(asked: bool) -> None:
 _VERSION = typer.Option(False, "--version", callback=_version, is_eager=True, help="Print the version.")
 
 
-def _top(version: bool = _VERSION) -> None:  # noqa: ARG001 - its callback has done it by now
+def _top(version: bool = _VERSION) -> None:
     pass
 
 

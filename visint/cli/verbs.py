@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 from importlib.machinery import PathFinder
 from pathlib import Path
-
 from typing import Any
 
 import typer

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 from visint.errors import ModuleError
@@ -26,7 +27,7 @@ def invoke_module(module: type[AnyModule], params: Any) -> Invoke:
     run = module(params).run
     inputs_type, outputs_type = module.Inputs, module.Outputs
     agree, fields, new = inputs_type.dims_agree, set(inputs_type.model_fields), inputs_type.__new__
-    shared = tuple(_shared(inputs_type.specs, outputs_type.specs))
+    shared = _shared(inputs_type, outputs_type)
 
     def invoke(values: Values, context: Context) -> Mapping[str, Any]:
         try:
@@ -50,7 +51,7 @@ def invoke_module(module: type[AnyModule], params: Any) -> Invoke:
 
 
 class _Dim(NamedTuple):
-    """A dim that inputs and outputs share: the first port of either side that always has it, and its axis."""
+    """A dim that inputs and outputs share: a port of either side that has it, and its axis there."""
 
     name: str
     source: PortSpec
@@ -65,31 +66,22 @@ class _Dim(NamedTuple):
         wanted = (before.value if self.source.evidence else before).shape[self.source_axis]
         found = (after.value if self.target.evidence else after).shape[self.target_axis]
         if wanted != found:
-            said = f"{self.name} is {wanted} on input {self.source.name!r} but {found} on output {self.target.name!r}"
+            ports = f"input {self.source.name!r} but {found} on output {self.target.name!r}"
+            said = f"{self.name} is {wanted} on {ports}"
             raise ModuleError.of("VI402", said)
 
 
-def _shared(inputs: Mapping[str, PortSpec], outputs: Mapping[str, PortSpec]) -> Iterator[_Dim]:
-    seen: set[str] = set()
-    for target in outputs.values():
-        for target_axis, dim in _dims(target):
-            source = next(
-                (
-                    (spec, i)
-                    for spec in inputs.values()
-                    for i, d in _dims(spec)
-                    if d == dim and not spec.optional
-                ),
-                None,
-            )
-            if source is not None and dim not in seen:
-                seen.add(dim)
-                yield _Dim(dim, source[0], source[1], target, target_axis)
+@lru_cache(maxsize=256)
+def _shared(inputs: type[Ports], outputs: type[Ports]) -> tuple[_Dim, ...]:
+    sources = {dim: (port, axis) for port, axis, dim in _dims(inputs) if not port.optional}
+    targets = {dim: (port, axis) for port, axis, dim in _dims(outputs)}
+    return tuple(_Dim(dim, *sources[dim], *targets[dim]) for dim in targets if dim in sources)
 
 
-def _dims(spec: PortSpec) -> Iterator[tuple[int, str]]:
-    if spec.array is not None and not spec.many:
-        yield from ((i, dim) for i, dim in enumerate(spec.array.dims) if isinstance(dim, str))
+def _dims(ports: type[Ports]) -> Iterator[tuple[PortSpec, int, str]]:
+    for port in ports.specs.values():
+        if port.array is not None and not port.many:
+            yield from ((port, axis, dim) for axis, dim in enumerate(port.array.dims) if isinstance(dim, str))
 
 
 def _no_outputs(outputs: object, wanted: type[Ports]) -> str:

@@ -198,6 +198,9 @@ def _result(schedule: Schedule, state: State, values: Mapping[str, Any], seconds
     for (spoke, port), slot in schedule.kept.items():
         if state.slots[slot] is not None:
             evidence[spoke if ports.count(spoke) == 1 else f"{spoke}.{port}"] = state.slots[slot]
+    for name, edge in schedule.graph.outputs.items():  # what an output's evidence said beside its value
+        if isinstance(outputs.get(name), Evidence):
+            evidence.setdefault(edge.source.node, outputs[name])
     maps = {name: state.slots[slot] for name, slot in schedule.maps.items()}
     return gather(
         schedule.graph,

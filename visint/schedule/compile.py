@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 
 import networkx as nx
 
@@ -15,8 +16,27 @@ from visint.schedule.steps import Block, Item, Pyramid, Repeat, Schedule, Step
 __all__ = ["compile_graph"]
 
 
+class _Same:
+    """A graph as a key: the very object, for equal specs may have been bound to other modules."""
+
+    def __init__(self, graph: Graph) -> None:
+        self.graph = graph
+
+    def __hash__(self) -> int:
+        return id(self.graph)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and other.graph is self.graph
+
+
 def compile_graph(graph: Graph) -> Schedule:
-    """The schedule of ``graph``. It depends on the graph alone; compiling runs nothing."""
+    """The schedule of ``graph``; it depends on the graph alone, and the last few are kept. Runs nothing."""
+    return _compile(_Same(graph))
+
+
+@lru_cache(maxsize=32)
+def _compile(same: _Same) -> Schedule:
+    graph = same.graph
     joined = wires(graph)
     order = list(nx.topological_sort(joined))
     keys = structural_keys(graph, order)
@@ -44,7 +64,7 @@ def _block(layout: Layout, blocks: Blocks, loop: str | None, keys: Mapping[str, 
             items.append(_loop(layout, name, _block(layout, blocks, name, keys)))
         else:
             node = layout.graph.nodes[name]
-            items.append(Step(node, tuple(layout.ins[name]), tuple(layout.outs(name)), keys[name]))
+            items.append(Step(node, tuple(layout.ins[name]), layout.outs(name), keys[name]))
     return Block(tuple(items), layout.frees(loop), blocks.waits(loop))
 
 

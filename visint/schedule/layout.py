@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
 
 from visint.graph.callees import BEGIN, COMMIT
 from visint.graph.graph import INPUTS, Edge, Feedback, Graph, Reader
@@ -44,6 +43,7 @@ class Layout:
         self.maps: dict[str, int] = {}
         self.until: dict[str, tuple[int | None, int | None]] = {}
         self._blocks = blocks
+        self._outs: dict[str, list[Out]] = defaultdict(list)
         self._homes: dict[int, Spot | None] = {}
         self._readers: dict[int, list[Spot]] = defaultdict(list)
         self._for_good: set[int] = set()
@@ -78,11 +78,9 @@ class Layout:
                 if spec.evidence and node.of == name:
                     self.kept[name, port] = self._forever(PortRef(name, port))
 
-    def outs(self, name: str) -> Iterator[Out]:
+    def outs(self, name: str) -> tuple[Out, ...]:
         """The slots a node fills."""
-        for (source, reader), slot in self.slots.items():
-            if source.node == name:
-                yield Out(slot, source.port, reader)
+        return tuple(self._outs.get(name, ()))
 
     def frees(self, loop: str | None) -> tuple[tuple[int, ...], ...]:
         """For each item of a block the slots that have had their last reader after it."""
@@ -113,6 +111,7 @@ class Layout:
             if source.node != INPUTS:
                 home = (self._blocks.loops[source.node], ("node", source.node))
             self.slots[source, reader] = self._new(home)
+            self._outs[source.node].append(Out(self.slots[source, reader], source.port, reader))
         return self.slots[source, reader]
 
     def _read(self, edge: Edge, loop: str | None, spot: Spot) -> int:
