@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict
 import visint
 from visint.graph import parse_graph
 from visint.results import Source
-from visint.results.provenance import array_digest, provenance
+from visint.results.provenance import array_digest, installed_version, provenance
 from visint.testing.toys import TOYS
 
 INNER = """
@@ -58,7 +58,7 @@ def test_the_same_run_gives_the_same_text(toys, met):
 
 def test_it_tells_what_was_run_on_what(met):
     told = json.loads(text(met, {"left": Source(("a.png",), gamma=1.0)}))
-    assert told["visint"] == visint.__version__
+    assert told["visint"] == installed_version("visint")
     assert told["graph"]["name"] == "meeting"
     assert told["graph_hash"] == hashlib.sha256(met.graph.to_yaml().encode()).hexdigest()
     assert told["inputs"]["left"] == {

@@ -19,7 +19,16 @@ from visint.graph.graph import Callee, Graph
 if TYPE_CHECKING:
     from visint.results.result import Result
 
-__all__ = ["ABSENT", "LIBRARIES", "Source", "libraries", "modules", "parameters", "provenance"]
+__all__ = [
+    "ABSENT",
+    "LIBRARIES",
+    "Source",
+    "installed_version",
+    "libraries",
+    "modules",
+    "parameters",
+    "provenance",
+]
 
 ABSENT = "absent"
 """Stands for the digest of an optional input that was not given."""
@@ -40,7 +49,7 @@ def provenance(result: Result, sources: Mapping[str, Source]) -> dict[str, Any]:
     """The content of ``run.json`` but for the list of files: the same run gives the same text."""
     graph = result.graph
     told: dict[str, Any] = {
-        "visint": _version("visint"),
+        "visint": installed_version("visint"),
         "graph": graph.spec.plain(),
         "graph_hash": _sha(graph.to_yaml().encode()),
         "seed": result.seed,
@@ -135,10 +144,14 @@ def _params(params: Any) -> dict[str, Any]:
 
 def libraries() -> dict[str, str]:
     """Versions of Python and of :data:`LIBRARIES`."""
-    return {"python": platform.python_version(), **{name: _version(name) for name in LIBRARIES}}
+    return {
+        "python": platform.python_version(),
+        **{name: installed_version(name) for name in LIBRARIES},
+    }
 
 
-def _version(name: str) -> str:
+def installed_version(name: str) -> str:
+    """The version of an installed distribution, visint itself included; "not installed" if it is not."""
     try:
         return version(name)
     except PackageNotFoundError:

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from string import Template
 from typing import TYPE_CHECKING, NamedTuple
 
-import visint
 from visint import io
+from visint.results.provenance import installed_version
 from visint.results.report import course, fields, origin
 from visint.results.report.legends import gradients
 from visint.results.report.markup import Markup, element, joined
@@ -77,7 +77,7 @@ def _page(setting: Setting) -> str:
             element("li", element("a", section.title, href=f"#{section.name}")) for section, _ in filled
         ),
         sections=joined(_section(section, content) for section, content in filled),
-        version=joined([visint.__version__]),
+        version=joined([installed_version("visint")]),
     )
 
 
