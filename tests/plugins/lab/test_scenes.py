@@ -34,7 +34,7 @@ def test_every_object_is_in_view_of_both_cameras(name):
         assert not seen[[0, -1]].any()
         assert not seen[:, [0, -1]].any()
     seen = pair.truth.foreground
-    assert 0.1 < seen.mean() < 0.6
+    assert 0.08 < seen.mean() < 0.6
     assert pair.truth.visible[seen].mean() > 0.85
     low, high = pair.camera.disparity_range
     assert low < np.nanmin(pair.truth.disparity) <= np.nanmax(pair.truth.disparity) < high
