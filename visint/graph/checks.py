@@ -109,6 +109,7 @@ _NUMBERS = frozenset(
     {"Image", "Depth", "Disparity", "Relief", "Confidence", "Sigma", "Mask", "Boundaries", "Regions"}
 )
 _PLANES = ("Depth", "Disparity")
+_SINGLE = frozenset({"Scalar", "Flag"})
 
 
 def starts_fit(graph: Graph, draft: Draft) -> Found:
@@ -133,14 +134,14 @@ def _start_fault(graph: Graph, port: PortSpec, start: float | str | Edge | None,
     if start == "plane":
         fits = port.kind in _PLANES and not port.evidence
         return "" if fits else f"'plane' is a start for Depth or Disparity; {port.name!r} is {port}"
-    fits = port.kind in _NUMBERS and not port.evidence and not port.many
+    fits = port.kind in _NUMBERS | _SINGLE and not port.evidence and not port.many
     return "" if fits else f"a number is no start for {port.name!r}, which is {port}"
 
 
 def _right_start(port: PortSpec) -> str:
     if port.optional:
         return "none"
-    if port.kind in _NUMBERS and not port.evidence and not port.many:
+    if port.kind in _NUMBERS | _SINGLE and not port.evidence and not port.many:
         return "plane" if port.kind in _PLANES else "0"
     return f"node.port   (of a node outside the loop that gives {port})"
 
