@@ -222,6 +222,7 @@ def test_a_plugins_writer_comes_first(toys):
     assert only(result) == {
         "depth.txt": b"(5, 7)",
         "depth_confidence.pfm": only(result)["depth_confidence.pfm"],
+        "evidence.npz": only(result)["evidence.npz"],
     }
 
 
