@@ -1,10 +1,10 @@
-"""Words in a drawing: made safe to show, measured, and cut to fit. No font is asked; widths are those of Arial."""
+"""Words in a drawing: made safe to show, measured (by the widths of Arial, no font is asked) and cut to fit."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-__all__ = ["clean", "fitted", "width", "widest"]
+__all__ = ["clean", "fitted", "widest", "width"]
 
 _NARROW = frozenset("iljtfrI.,:;|!'()[]/ -·")
 _WIDE = frozenset("mwMWOQGCDHNU@%—…↻")

@@ -1,4 +1,4 @@
-"""The edges of a spec, as drawn: every reference resolved to a box, the hub's own traffic left to its spokes."""
+"""The edges of a spec as drawn: references resolved to boxes, the hub's own traffic left to its spokes."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def _all(spec: GraphSpec) -> Iterator[Edge]:
 def _hub(spec: GraphSpec) -> Iterator[Edge]:
     if spec.hub is None:
         return
-    starts = {f"start {name}": start for name, start in spec.hub.start.items() if _is_ref(start)}
+    starts = {f"start {name}": str(start) for name, start in spec.hub.start.items() if _is_ref(start)}
     yield from _ins(spec, MAP, starts)
     for name, step in spec.hub.reconcile.items():
         yield from _step(spec, MAP, name, step)
