@@ -115,25 +115,32 @@ class PairFiles:
         return Camera.uncalibrated(left.shape[1], left.shape[0], self.span)
 
     def _disparity(self, path: Path | None) -> Array | None:
-        from visint.io import read, read_raster
+        from visint.io import read
 
         if path is None:
             return None
         if path.suffix == ".pfm":
             return np.where(np.isfinite(found := read(path, "Disparity")), found, np.float32(np.nan))
-        stored = read_raster(path)
-        samples = (stored.samples if stored.grey is None else stored.grey).astype(np.float32)
+        samples = _grey(path).astype(np.float32)
         return np.where(samples > 0, samples / np.float32(self.scale), np.float32(np.nan))
 
     def _visible(self, disparity: Array | None) -> Array | None:
-        from visint.io import read_raster
-
         if disparity is None:
             return None
         if self.mask is not None:
-            return np.asarray(read_raster(self.mask).samples == 255)
+            return np.asarray(_grey(self.mask) == 255)
         right = self._disparity(self.disparity_right)
         return None if right is None else _agreeing(disparity, right)
+
+
+def _grey(path: Path) -> Array:
+    """The samples (H, W) as stored; of a colour file its first channel."""
+    from visint.io import read_raster
+
+    stored = read_raster(path)
+    if stored.samples.ndim == 2:
+        return stored.samples
+    return np.asarray(stored.samples[..., 0])
 
 
 def _agreeing(left: Array, right: Array) -> Array:

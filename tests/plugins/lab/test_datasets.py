@@ -99,6 +99,7 @@ def test_the_26_real_pairs_are_found_and_their_truth_fits():
     assert len(files) == 26
     for one in (files[0], files[1], files[6], files[12], files[-4]):
         pair = one.read()
+        assert pair.visible is None or pair.visible.shape == pair.left.shape == pair.disparity.shape
         low, high = pair.camera.disparity_range
         assert low - 1 <= np.nanmin(pair.disparity) <= np.nanmax(pair.disparity) <= high + 1
         off = [warp_error(pair, shift) for shift in (-3, 0, 3)]
