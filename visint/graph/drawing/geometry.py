@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from visint.graph.drawing.model import Box, Edge, Group
 
@@ -65,6 +65,8 @@ class Placed(NamedTuple):
     rect: Rect
     ins: tuple[tuple[str, float], ...]
     outs: tuple[tuple[str, float], ...]
+    badge: Literal["left", "right"] = "left"
+    """At which corner a spoke's number stands: the one away from the map."""
 
 
 class Frame(NamedTuple):
@@ -112,4 +114,5 @@ def _sum(point: Point, by: Point) -> Point:
 
 def _moved(one: Placed, by: Point) -> Placed:
     ins = tuple((port, x + by.x) for port, x in one.ins)
-    return Placed(one.box, one.rect.moved(by), ins, tuple((port, x + by.x) for port, x in one.outs))
+    outs = tuple((port, x + by.x) for port, x in one.outs)
+    return one._replace(rect=one.rect.moved(by), ins=ins, outs=outs)

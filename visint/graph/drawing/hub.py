@@ -12,10 +12,11 @@ from visint.graph.drawing.ring import ring, spoke_line
 
 __all__ = ["hub_block"]
 
-TRACK = 12.0
+TRACK, STEP, STEPS = 9.0, 5.0, 3
 LANE = 12.0
 CLEAR = 6.0
 PAD = 12.0
+SKIRT = 20.0
 
 
 @dataclass(slots=True)
@@ -51,7 +52,7 @@ def hub_block(hub: Hub, edges: Iterable[Edge]) -> Block:
     boxes = {box.key: box for box in (hub.map, *hub.spokes)}
     yard = _yard(hub)
     top = min(rect.y for rect in yard.rects.values()) - PAD
-    bottom = max(rect.bottom for rect in yard.rects.values()) + PAD
+    bottom = max(rect.bottom for rect in yard.rects.values()) + SKIRT
     ways = [(edge, _way(yard, edge, boxes, (top, bottom))) for edge in edges]
     ways = [(edge, way) for edge, way in ways if way]
     return _block(hub, yard, ways, (top, bottom))
@@ -80,15 +81,17 @@ def _way(yard: _Yard, edge: Edge, boxes: dict[str, Box], ends: tuple[float, floa
 
 
 def _head(yard: _Yard, edge: Edge) -> tuple[Point, Point]:
-    """The edge's end at its target, and the track above it."""
-    x, y = yard.ports[edge.target, "in", edge.into], yard.rects[edge.target].y
-    return Point(x, y), Point(x, y - TRACK)
+    """The edge's end at its target, and the track above it: the nearer its lane, the lower."""
+    x, rect = yard.ports[edge.target, "in", edge.into], yard.rects[edge.target]
+    others = [at for (key, side, _), at in yard.ports.items() if (key, side) == (edge.target, "in")]
+    nearer = sum(1 for at in others if (at < x if x < 0 else at > x))
+    return Point(x, rect.y), Point(x, rect.y - TRACK - STEP * min(nearer, STEPS))
 
 
 def _tail(yard: _Yard, edge: Edge) -> tuple[Point, Point]:
-    """The edge's end at its source, and the track below it."""
+    """The edge's end at its source, and the track below it: one for the left half, one for the right."""
     x, y = yard.ports[edge.source, "out", edge.out], yard.rects[edge.source].bottom
-    return Point(x, y), Point(x, y + TRACK)
+    return Point(x, y), Point(x, y + TRACK + STEP * (x > 0))
 
 
 def _entering(yard: _Yard, edge: Edge, top: float) -> tuple[Point, ...]:
@@ -139,4 +142,5 @@ def _block(
 def _placed(yard: _Yard, box: Box) -> Placed:
     rect = yard.rects[box.key]
     ins = tuple((port, yard.ports[box.key, "in", port]) for port in box.ins)
-    return Placed(box, rect, ins, tuple((port, yard.ports[box.key, "out", port]) for port in box.outs))
+    outs = tuple((port, yard.ports[box.key, "out", port]) for port in box.outs)
+    return Placed(box, rect, ins, outs, "right" if rect.x > 0 else "left")

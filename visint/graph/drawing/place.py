@@ -1,23 +1,24 @@
 """Where the cells of each row stand: as near to their neighbours as their order and sizes allow.
 
-Row after row, the sum of the edges' sideways steps is made small: at first of their squares, then, by weights made
-anew from the steps themselves, of their lengths, which leaves many edges upright and a few aslant.
+Row after row, the sum of the edges' sideways steps is made small: at first of their squares, then, by weights
+made anew from the steps themselves, of their lengths, which leaves many edges upright and a few aslant.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 from visint.graph.drawing.lattice import Cell, Lattice, Link
 
 __all__ = ["place", "settle"]
 
-ROUGH, FINE = 8, 40
+ROUGH, FINE = 8, 60
 """Sweeps of either sort."""
 APART, PASSING = 26.0, 16.0
 """The least room between two blocks, and beside a way."""
-NEARLY = 6.0
-"""Sideways steps below this many pixels weigh by their square also in the end."""
+NEARLY, COOLING = 8.0, 0.94
+"""Sideways steps below this many pixels still weigh by their square; a fine sweep lowers the bound so much."""
 
 Between = Sequence[Sequence[Link]]
 
@@ -29,8 +30,9 @@ def place(found: Lattice) -> None:
     between = found.between()
     for turn in range(ROUGH + FINE):
         order = range(len(found.rows))
+        nearly = NEARLY * COOLING ** (turn - ROUGH) if turn >= ROUGH else math.inf
         for row in order if turn % 2 == 0 else reversed(order):
-            _pull(found.rows[row], _links(between, row, turn), fine=turn >= ROUGH)
+            _pull(found.rows[row], _links(between, row, turn), nearly)
     left = min((cell.x for row in found.rows for cell in row), default=0.0)
     for cell in (cell for row in found.rows for cell in row):
         cell.x -= left
@@ -62,11 +64,11 @@ def _starts(row: Sequence[Cell]) -> Iterator[float]:
         at += cell.w
 
 
-def _pull(row: Sequence[Cell], links: Sequence[Link], fine: bool) -> None:
+def _pull(row: Sequence[Cell], links: Sequence[Link], nearly: float) -> None:
     """Moves the cells of ``row`` towards where ``links`` would be upright."""
     pulls: dict[Cell, list[tuple[float, float]]] = {cell: [] for cell in row}
     for link in links:
-        weight = _weight(link, fine)
+        weight = _weight(link, nearly)
         if link.lower in pulls:
             pulls[link.lower].append((link.upper.x + link.start - link.end, weight))
         if link.upper in pulls:
@@ -78,11 +80,11 @@ def _pull(row: Sequence[Cell], links: Sequence[Link], fine: bool) -> None:
         cell.x = x + start
 
 
-def _weight(link: Link, fine: bool) -> float:
+def _weight(link: Link, nearly: float) -> float:
     """Long edges, which pass rows by ways, are to be straight first of all."""
     weight = 8.0 if not link.upper.block and not link.lower.block else 1.0
     step = abs(link.upper.x + link.start - link.lower.x - link.end)
-    return weight * NEARLY / max(step, NEARLY) if fine else weight
+    return weight if step <= nearly else weight * nearly / step
 
 
 def _mean(pulls: Sequence[tuple[float, float]]) -> tuple[float, float]:

@@ -9,7 +9,7 @@ _LIGHT = {
     "ink": "#1c2733",
     "soft": "#5b6875",
     "line": "#7f8c99",
-    "edge": "#9aa6b2",
+    "edge": "#8592a0",
     "box": "#ffffff",
     "end": "#eef1f4",
     "frame0": "#f5f8fb",

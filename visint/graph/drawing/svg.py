@@ -95,8 +95,9 @@ def _words(one: Placed) -> Iterator[str]:
     yield _text(Point(middle.x, middle.y + 13), fitted(box.text), "text", TEXT)
     yield from _ports(one)
     if box.turn:
-        yield f'<circle class="turn" cx="{number(rect.x + 3)}" cy="{number(rect.y + 3)}" r="9"/>'
-        yield _text(Point(rect.x + 3, rect.y + 6.5), str(box.turn), "count", TEXT)
+        x = rect.x + 3 if one.badge == "left" else rect.right - 3
+        yield f'<circle class="turn" cx="{number(x)}" cy="{number(rect.y + 3)}" r="9"/>'
+        yield _text(Point(x, rect.y + 6.5), str(box.turn), "count", TEXT)
 
 
 def _ports(one: Placed) -> Iterator[str]:
