@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from visint.arrays import Array
+from visint.arrays import Array, read_only
 from visint.engine.state import State
 from visint.errors import ModuleError
 from visint.fields import geometry
@@ -54,7 +54,7 @@ def plane(kind: str, camera: Camera) -> Array:
     middle = camera.middle_disparity
     middle = _BLIND_GUESS * camera.width if middle is None else middle
     flat = np.full(camera.size, middle, np.float32)
-    return flat if kind == "Disparity" else geometry.depth_from_disparity(flat, camera)
+    return read_only(flat if kind == "Disparity" else geometry.depth_from_disparity(flat, camera))
 
 
 def _kinds(node: Node) -> dict[str, FieldKind]:
@@ -76,7 +76,7 @@ def _begin(node: Node, values: dict[str, Any], context: Context, state: State) -
     confidence = {name: values.get(f"{name}_confidence") for name in kinds}
     for name, value in starts.items():
         if confidence[name] is None and isinstance(value, np.ndarray):
-            confidence[name] = np.zeros(value.shape[:2], np.float32)
+            confidence[name] = read_only(np.zeros(value.shape[:2], np.float32))
     return MapSnapshot(camera, kinds, starts, confidence)
 
 
@@ -95,7 +95,7 @@ def _start(name: str, kind: FieldKind, node: Node, values: dict[str, Any], camer
     if asked == "plane":
         return plane(kind.name, camera)
     dtype = kind.array.dtype if kind.array else "float32"
-    return np.full(camera.size, asked, dtype)
+    return read_only(np.full(camera.size, asked, dtype))
 
 
 def _down_to(value: Any, kind: FieldKind, level: int) -> Any:

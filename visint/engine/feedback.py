@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from visint.arrays import read_only
 from visint.engine.commit import plane
 from visint.engine.frame import Frame
 from visint.engine.state import State
@@ -38,7 +39,7 @@ def _start(state: State, cell: Cell, frame: Frame, camera: Camera | None) -> Any
         return _plane(cell.port, frame, camera)
     if cell.port.array is None:
         return bool(cell.start) if cell.port.kind == "Flag" else cell.start
-    return np.full(_size(cell.port, frame), cell.start, cell.port.array.dtype)
+    return read_only(np.full(_size(cell.port, frame), cell.start, cell.port.array.dtype))
 
 
 def _plane(port: PortSpec, frame: Frame, camera: Camera | None) -> Any:
