@@ -9,7 +9,7 @@ from visint.engine.executors import Run
 from visint.engine.feedback import begin, carry
 from visint.engine.frame import Frame
 from visint.engine.state import State
-from visint.errors import ModuleError
+from visint.errors import ModuleError, Problem
 from visint.events import LoopEnded, TurnFinished, Warned
 from visint.fields.camera import Camera
 from visint.results import records
@@ -86,7 +86,8 @@ class Turns:
             return
         said = f"the loop {name!r} went round {turns} times at level {frame.level} without ending"
         if self._repeat.loop.spec.on_exhausted == "fail":
-            raise ModuleError.of("VI404", said, write="on_exhausted: accept, or more times")
+            problem = Problem("VI404", said, write="on_exhausted: accept, or more times", fault="graph")
+            raise ModuleError(problem)
         if self._repeat.loop.spec.on_exhausted == "warn":
             state.record.warnings.append(records.Warned(name, frame.level, turns - 1, "exhausted", said))
             state.tell(Warned(name, frame.level, turns - 1, "exhausted", said))
