@@ -22,11 +22,15 @@ def relative_change(before: Any, after: Any) -> float:
 
     Returns
     -------
-    0 where nothing changed, inf where all went to zero, NaN where no pixel can be compared.
+    0 where nothing changed, inf where all went to zero, NaN where nothing can be compared: no pixel is
+    known in both, sizes differ, or what goes round is no number.
     """
     if before is None or after is None:
         return math.nan
-    old, new = _numbers(before), _numbers(after)
+    try:
+        old, new = _numbers(before), _numbers(after)
+    except (TypeError, ValueError):  # a camera, a text
+        return math.nan
     if old.shape != new.shape:
         return math.nan
     both = np.isfinite(old) & np.isfinite(new)
