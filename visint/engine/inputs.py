@@ -66,10 +66,10 @@ def _one(name: str, kind: str, array: ArraySpec | None, value: Any) -> Any:
     if array is None:
         return _plain(name, kind, value)
     value = np.asarray(value) if isinstance(value, list | tuple) else value
-    if kind == "Image" and isinstance(value, np.ndarray) and value.ndim == 3 and value.shape[2] == 3:
-        value = io.luminance(_exact(value, "float32"))
     if isinstance(value, np.ndarray):
         value = _exact(value, array.dtype)
+        if kind == "Image" and value.dtype == np.float32 and value.shape[2:] == (3,):
+            value = io.luminance(value)
     try:
         return array.check(value)
     except ValueError as error:
@@ -91,6 +91,7 @@ def _hint(value: Any, array: ArraySpec) -> str:
 
 
 def _plain(name: str, kind: str, value: Any) -> Any:
+    value = value.item() if isinstance(value, np.generic) else value
     wanted = {"Scalar": (int, float), "Flag": (bool,), "Text": (str,)}.get(kind)
     if wanted is None:
         found = getattr(type(value), "__kind__", type(value).__qualname__)
