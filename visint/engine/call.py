@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from time import perf_counter
 from typing import Any
 
@@ -147,16 +148,19 @@ class Call:
         origin = f" of {callee.origin}" if callee.origin else ""
         module = f"{callee.id} (version {callee.version}{origin})" if callee.version else callee.id
         where = Where(path=f"node {self.node.name!r}, {module}, {place}")
-        if isinstance(error, VisintError) and not isinstance(error, ModuleError):
-            return type(error)(error.problems)
+        if isinstance(error, VisintError):
+            return type(error)(replace(each, where=_inside(where, each.where)) for each in error.problems)
         code, found = _said(error)
         return ModuleError(Problem(code, found, where, fault="plugin"))
 
 
+def _inside(node: Where, place: Where) -> Where:
+    """Where a problem is: at the node, and at its own place in there (a node of a sub-graph, a line of a file)."""
+    return Where(path=f"{node.path}: {place}" if str(place) else node.path)
+
+
 def _said(error: BaseException) -> tuple[str, str]:
     """The code of a failure and what is said of it."""
-    if isinstance(error, ModuleError):
-        return error.problems[0].code, "; ".join(problem.found for problem in error.problems)
     if isinstance(error, ValidationError):
         items = error.errors(include_input=False, include_url=False)
         said = "; ".join(f"{'.'.join(map(str, e['loc']))} {e['msg']}".strip() for e in items)
