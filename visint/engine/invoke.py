@@ -60,27 +60,35 @@ class _Dim(NamedTuple):
     target_axis: int
 
     def check(self, values: Values, given: Mapping[str, Any]) -> None:
-        before, after = values[self.source.name], given[self.target.name]
-        if after is None:
+        before = _first(values[self.source.name], self.source)
+        after = _first(given[self.target.name], self.target)
+        if before is None or after is None:
             return
-        wanted = (before.value if self.source.evidence else before).shape[self.source_axis]
-        found = (after.value if self.target.evidence else after).shape[self.target_axis]
+        wanted, found = before.shape[self.source_axis], after.shape[self.target_axis]
         if wanted != found:
             ports = f"input {self.source.name!r} but {found} on output {self.target.name!r}"
             said = f"{self.name} is {wanted} on {ports}"
             raise ModuleError.of("VI402", said)
 
 
+def _first(value: Any, port: PortSpec) -> Any:
+    """The array on a port, the first of a list; None if there is none. Those of a list agree with each other."""
+    if port.many:
+        value = value[0] if value else None
+    return value.value if port.evidence and value is not None else value
+
+
 @lru_cache(maxsize=256)
 def _shared(inputs: type[Ports], outputs: type[Ports]) -> tuple[_Dim, ...]:
-    sources = {dim: (port, axis) for port, axis, dim in _dims(inputs) if not port.optional}
+    sources = {dim: (port, axis) for port, axis, dim in _dims(inputs)}
     targets = {dim: (port, axis) for port, axis, dim in _dims(outputs)}
     return tuple(_Dim(dim, *sources[dim], *targets[dim]) for dim in targets if dim in sources)
 
 
 def _dims(ports: type[Ports]) -> Iterator[tuple[PortSpec, int, str]]:
-    for port in ports.specs.values():
-        if port.array is not None and not port.many:
+    """(port, axis, name) of every named dim, those of the ports that are surest to hold an array last."""
+    for port in sorted(ports.specs.values(), key=lambda port: (port.optional, port.many), reverse=True):
+        if port.array is not None:
             yield from ((port, axis, dim) for axis, dim in enumerate(port.array.dims) if isinstance(dim, str))
 
 
