@@ -5,15 +5,15 @@
 
 from __future__ import annotations
 
-import os
 import sys
+import traceback
 from collections.abc import Sequence
 
 import typer
 
 from visint.cli import check, modules, run, schema, show
 from visint.cli.verbs import Verbs
-from visint.errors import VisintError
+from visint.errors import UsageError, VisintError
 
 __all__ = ["application", "main"]
 
@@ -34,7 +34,8 @@ def application() -> typer.Typer:
     )
     app.callback()(_top)
     for verb in (run, check, show, modules, schema):
-        app.command(name=verb.__name__.rpartition(".")[2], epilog=verb.EXAMPLES)(verb.command)
+        name, about = verb.__name__.rpartition(".")[2], (verb.command.__doc__ or "").partition(".")[0]
+        app.command(name=name, short_help=about, epilog=verb.EXAMPLES)(verb.command)
     return app
 
 
@@ -54,7 +55,7 @@ def _top(version: bool = _VERSION) -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs the program and leaves with its exit code."""
+    """Runs the program: leaves with its exit code, or gives it where ``arguments`` are given."""
     given = list(sys.argv[1:] if arguments is None else arguments)
     debug = "--debug" in given
     if debug:
@@ -66,31 +67,34 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(given: list[str], debug: bool) -> int:
+    command = typer.main.get_command(application())
     try:
-        left_with = typer.main.get_command(application()).main(given, prog_name="visint", standalone_mode=False)
-        return left_with if isinstance(left_with, int) else 0
-    except VisintError as error:
+        left_with = command.main(given, prog_name="visint", standalone_mode=False)
+    except SystemExit as left:
+        if isinstance(left.__context__, BrokenPipeError):  # the reader went away, as `| head` does: its right
+            return 0
+        raise
+    except (KeyboardInterrupt, typer.Abort):
+        left_with = 130
+    except Exception as error:
         if debug:
-            raise
+            traceback.print_exception(error)
+        return _told(error)
+    if left_with == 130:
+        typer.echo("interrupted; nothing half-written is left", err=True)
+    return left_with if isinstance(left_with, int) else 0
+
+
+def _told(error: Exception) -> int:
+    """Says what went wrong, in a few lines on stderr; gives the exit code."""
+    if isinstance(error, VisintError):
         typer.echo(str(error), err=True)
         return error.exit_code
-    except (KeyboardInterrupt, typer.Abort):
-        typer.echo("interrupted; nothing half-written is left", err=True)
-        return 130
-    except BrokenPipeError:  # the reader of our output went away, as `| head` does
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
-    except Exception as error:
-        return _unforeseen(error, debug)
-
-
-def _unforeseen(error: Exception, debug: bool) -> int:
     show = getattr(error, "show", None)  # what click says of a wrong command line, whichever click it is
     if show is not None:
         show()
-        return 2
-    if debug:
-        raise error
-    told = f"visint: an unexpected {type(error).__name__}: {error}\n  [visint]   see it whole: --debug"
-    typer.echo(told, err=True)
-    return 4
+        return UsageError.exit_code
+    said = " ".join(str(error).split())[:300]
+    unforeseen = f"visint: an unexpected {type(error).__name__}: {said}\n  [visint]   see it whole: --debug"
+    typer.echo(unforeseen, err=True)
+    return VisintError.exit_code

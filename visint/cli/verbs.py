@@ -80,7 +80,7 @@ def _summary(entry: Entry) -> str:
         functions = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
         called = [node for node in functions if node.name == entry.target.attr]
         docs = [ast.get_docstring(node) for node in called] + [ast.get_docstring(tree)]
-        return next((doc.partition("\n")[0] for doc in docs if doc), f"(from {entry.origin})")
+        return next((doc.partition("\n")[0].rstrip(".") for doc in docs if doc), f"(from {entry.origin})")
     return f"(from {entry.origin})"
 
 
