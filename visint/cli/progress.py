@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-import time
+import sys
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
-from visint.events import Event, LevelStarted, LoopEnded, NodeFinished, NodeStarted, Observer, RunStarted
+from visint.events import Event, NodeFinished, NodeStarted, Observer, RunStarted
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
 
 __all__ = ["progress"]
 
@@ -17,31 +22,29 @@ _PATIENCE = 1.0
 @contextmanager
 def progress(*, quiet: bool) -> Iterator[Observer | None]:
     """An observer that draws a bar on stderr; None where nobody would see it."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-    console = Console(stderr=True)
-    if quiet or not console.is_terminal:
-        yield None
-        return
     columns = (TextColumn("{task.description:28}"), BarColumn(), TimeElapsedColumn(), TimeRemainingColumn())
-    bar = Progress(*columns, console=console, transient=True)
+    bar = _Bar(Progress(*columns, console=Console(stderr=True), transient=True))
     try:
-        yield _Bar(bar)
+        yield bar
     finally:
-        bar.stop()
+        bar.close()
 
 
 class _Bar:
-    """Turns events into the state of a bar."""
+    """Turns events into the state of a bar. A clock of its own shows it: a slow node tells of nothing."""
 
-    def __init__(self, bar: object) -> None:
-        from rich.progress import Progress
-
-        assert isinstance(bar, Progress)
+    def __init__(self, bar: Progress) -> None:
         self._bar = bar
         self._task = bar.add_task("starting", total=None)
-        self._since = time.monotonic()
+        self._clock = threading.Timer(_PATIENCE, bar.start)
+        self._clock.daemon = True
+        self._clock.start()
 
     def __call__(self, event: Event) -> None:
         if isinstance(event, RunStarted):
@@ -50,7 +53,9 @@ class _Bar:
             self._bar.update(self._task, description=f"{event.node} (level {event.level})")
         elif isinstance(event, NodeFinished):
             self._bar.advance(self._task)
-        elif isinstance(event, LoopEnded | LevelStarted):
-            self._bar.refresh()
-        if not self._bar.live.is_started and time.monotonic() - self._since > _PATIENCE:
-            self._bar.start()
+
+    def close(self) -> None:
+        self._clock.cancel()
+        self._clock.join()
+        if self._bar.live.is_started:
+            self._bar.stop()
