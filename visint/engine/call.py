@@ -155,7 +155,7 @@ class Call:
 
 
 def _inside(node: Where, place: Where) -> Where:
-    """Where a problem is: at the node, and at its own place in there (a node of a sub-graph, a line of a file)."""
+    """Where a problem is: at the node, and at a place of its own in there (a sub-graph's node, a line)."""
     return Where(path=f"{node.path}: {place}" if str(place) else node.path)
 
 

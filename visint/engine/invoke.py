@@ -72,7 +72,7 @@ class _Dim(NamedTuple):
 
 
 def _first(value: Any, port: PortSpec) -> Any:
-    """The array on a port, the first of a list; None if there is none. Those of a list agree with each other."""
+    """The array on a port, the first of a list (all of a list agree); None if there is none."""
     if port.many:
         value = value[0] if value else None
     return value.value if port.evidence and value is not None else value
