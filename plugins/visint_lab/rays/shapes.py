@@ -197,6 +197,9 @@ class HeightMap(Shape):
 class Mesh(Shape):
     """Triangles with a normal at every corner.
 
+    A mesh casts no shadow on itself over less than a tenth of its radius: flat triangles would shade each other
+    where their smooth normals still face the light.
+
     Parameters
     ----------
     corners

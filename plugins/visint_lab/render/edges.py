@@ -20,6 +20,7 @@ __all__ = ["CONCAVE", "CONVEX", "LIMB", "MARK", "NAMES", "NO_EDGE", "OCCLUDING",
 NO_EDGE, LIMB, OCCLUDING, CONVEX, CONCAVE, MARK, SHADOW = range(7)
 NAMES = ("none", "limb", "occluding", "convex crease", "concave crease", "mark", "shadow")
 HALVINGS = 18
+EDGE_ON, MESH_EDGE_ON = 0.05, 0.3  # cosines between normal and ray
 GEOMETRY, ALBEDO, LIGHTING = 1, 2, 3
 
 Flags = NDArray[np.bool_]
@@ -166,19 +167,31 @@ def _labels(
     a, b = _bisected(prober, first, second, reasons)
     torn = _gap(a, b) > 0.01 * _footprint(prober, a, b)
     nearer_second = torn & ~(a.sight.depth <= np.nan_to_num(b.sight.depth, nan=np.inf))
-    geometry = np.where(torn, _contour(prober, a, b, nearer_second), _crease(prober, (a, b), (first, second)))
+    geometry = np.where(
+        torn, _contour(prober, (a, b), (first, second), nearer_second), _crease(prober, (a, b), (first, second))
+    )
     bright = np.abs(a.sight.brightness - b.sight.brightness)
     shadow = np.where(bright > 0.02 * np.fmax(a.sight.albedo, 1e-6), SHADOW, NO_EDGE)
     labels = np.where(reasons == GEOMETRY, geometry, np.where(reasons == ALBEDO, MARK, shadow))
     return labels, nearer_second & (reasons == GEOMETRY)
 
 
-def _contour(prober: Prober, a: _End, b: _End, nearer_second: Flags) -> NDArray[np.int64]:
-    """Limb where the nearer surface is just seen edge-on. A mesh's normals are never quite so: be lenient."""
-    near = a.moved(nearer_second, b)
+def _contour(
+    prober: Prober, close: tuple[_End, _End], pixels: tuple[_End, _End], nearer_second: Flags
+) -> NDArray[np.int64]:
+    """Limb where the nearer surface is just seen edge-on.
+
+    The normals of a mesh are never quite so: there it is enough that the surface is seen at a low angle and
+    turns away within the pixel, which a flat face does not.
+    """
+    near, pixel = (pair[0].moved(nearer_second, pair[1]) for pair in (close, pixels))
     ray = _rays(prober, near)
     slant = np.abs((near.sight.normals * ray).sum(-1)) / np.linalg.norm(ray, axis=-1)
-    return np.where(slant < prober.edge_on[near.sight.thing], LIMB, OCCLUDING)
+    turns = _same_face(near, pixel) & (
+        (near.sight.normals * pixel.sight.normals).sum(-1) < np.cos(np.radians(0.5))
+    )
+    lenient = turns & (slant < MESH_EDGE_ON) & prober.of_mesh[near.sight.thing]
+    return np.where((slant < EDGE_ON) | lenient, LIMB, OCCLUDING)
 
 
 def _crease(prober: Prober, close: tuple[_End, _End], pixels: tuple[_End, _End]) -> NDArray[np.int64]:

@@ -42,8 +42,8 @@ class Prober:
         self._packed = packed if packed is not None else pack(scene)
         self._lamp = scene.lamp.numbers(scene.background)
         self._other = other
-        self.edge_on = np.array([0.3 if isinstance(t.shape, Mesh) else 0.05 for t in scene.things])
-        """(things,): below which cosine between normal and ray a surface counts as seen edge-on."""
+        self.of_mesh = np.array([isinstance(thing.shape, Mesh) for thing in scene.things])
+        """(things,): which are made of triangles."""
 
     def __call__(self, u: NDArray[np.float64], v: NDArray[np.float64]) -> Sight:
         """What is seen at image points (u, v), pixels, of any common shape."""
