@@ -1,13 +1,15 @@
-# make demo | test | dev | lint | docs | clean. Everything lives in .venv.
+# make demo | test | dev | lint | docs | peers | clean. Everything lives in .venv, the peers in .venv-peers.
 
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/pip --quiet --disable-pip-version-check
 SOURCES := pyproject.toml README.md LICENSE $(shell find visint plugins graphs -type f ! -name '*.pyc' ! -name '*.nb?')
+PEERS := opencv-contrib-python-headless pyelas pandora pandora-plugin-libsgm \
+         sf-hamilton dask haystack-ai langgraph kedro
 export VISINT_DATA ?= $(abspath ../shared/data)
 
-.PHONY: demo test dev lint docs clean
+.PHONY: demo test dev lint docs peers clean
 
 demo: $(VENV)/wheel
 	@$(BIN)/visint demo --out demo
@@ -28,8 +30,16 @@ lint: $(VENV)/lint
 docs: $(VENV)/docs
 	$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
 
+# Other people's matchers and engines, for visint bench alone. One that cannot be installed stops no other.
+peers:
+	@test -x .venv-peers/bin/python || $(PYTHON) -m venv .venv-peers
+	@for peer in $(PEERS); do \
+	  .venv-peers/bin/python -m pip --quiet --disable-pip-version-check install $$peer \
+	    && echo "installed: $$peer" || echo "not installed: $$peer"; \
+	done
+
 clean:
-	rm -rf $(VENV) build dist docs/_build
+	rm -rf $(VENV) .venv-peers build dist docs/_build
 
 $(VENV)/pip:
 	$(PYTHON) -m venv $(VENV)
