@@ -72,7 +72,9 @@ def _set(spec: GraphSpec, settings: Settings) -> GraphSpec:
     for key, value in settings.items():
         name, dot, param = key.partition(".")
         if not dot or not param:
-            raise GraphError(Problem("VI219", f"{key!r} is no parameter", write="node.parameter=value"))
+            owner = spec.nodes.get(name) or (spec.hub.spokes.get(name) if spec.hub else None)
+            write = f"{name}.parameter=value" if owner else "node.parameter=value"
+            raise GraphError(Problem("VI219", f"{key!r} names no parameter of a node", write=write))
         spec = _set_one(spec, name, param, value)
     return spec
 

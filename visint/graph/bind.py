@@ -62,9 +62,8 @@ def bind(
         draft.raise_problems()
         _find_callees(draft)
     graph = _wire(draft, spec, file)
-    draft.raise_problems()
-    draft.problems.extend(loops_exist(graph, draft))  # the other rules walk along the loops
-    draft.raise_problems()
+    draft.problems.extend(loops_exist(graph, draft))
+    draft.raise_problems()  # the rules walk along loops and edges: these must be there
     draft.problems.extend(problem for rule in RULES for problem in rule(graph, draft))
     draft.raise_problems()
     return graph

@@ -32,15 +32,16 @@ def find_callee(draft: Draft, uses: str, where: Where) -> Callee | None:
     module = ModuleId.parse(uses)
     if module is None:
         found = f"{uses!r} is no module; one is written plugin.module"
-        near = did_you_mean(uses, _known_modules(draft))
+        known = {each.partition(".")[2]: each for each in _known_modules(draft)}
+        near = known.get(did_you_mean(uses.rpartition(".")[2].lower(), known) or "", "plugin.module")
         choices = "plugins: " + listed(draft.catalog.plugin_names)
-        draft.say("VI201", found, where, choices, f"uses: {near or 'plugin.module'}")
+        draft.say("VI201", found, where, choices, f"uses: {near}")
         return None
     return _module_callee(draft, module, where)
 
 
 def _known_modules(draft: Draft) -> Iterator[str]:
-    """Every module of the plugins that are loaded, by id and (for who forgot the plugin) by its own name."""
+    """The ids of all modules of the plugins that are loaded."""
     for plugin in draft.catalog.loaded:
         for name in plugin.modules:
             yield f"{plugin.name}.{name}"
@@ -50,7 +51,7 @@ def _module_callee(draft: Draft, module: ModuleId, where: Where) -> Callee | Non
     names = draft.catalog.plugin_names
     if module.plugin not in names:
         near = did_you_mean(module.plugin, names)
-        write = f"uses: {near}.{module.name}" if near else ""
+        write = f"uses: {near}.{module.name}" if near else "pip install …   (the plugin that brings it)"
         draft.say("VI201", f"no plugin is named {module.plugin!r}", where, "plugins: " + listed(names), write)
         return None
     try:
@@ -62,7 +63,7 @@ def _module_callee(draft: Draft, module: ModuleId, where: Where) -> Callee | Non
     if found is None:
         near = did_you_mean(module.name, plugin.modules)
         choices = f"modules of {module.plugin!r}: " + listed(f"{module.plugin}.{m}" for m in plugin.modules)
-        write = f"uses: {module.plugin}.{near}" if near else ""
+        write = f"uses: {module.plugin}.{near or 'module'}"
         draft.say("VI201", f"{module.plugin!r} has no module {module.name!r}", where, choices, write)
         return None
     return Callee(str(module), found.Inputs.specs, found.Outputs.specs, module=found, origin=plugin.origin)
@@ -147,25 +148,33 @@ _DERIVED = {"disparity": "Disparity", "normals": "Normals", "slopes": "Slopes", 
 def map_ports(draft: Draft) -> dict[str, PortSpec]:
     """What can be read from the map: stored and derived fields, and the confidence of the stored ones.
 
-    Every one may be None (a field that starts as ``none``), except what follows from depth where that has
-    a start.
+    What has no start may be None, and so may what follows from it.
     """
-    empty = _starts_without_depth(draft.spec)
+    absent = {field: not _starts_with(draft.spec, field) for field in draft.fields}
     ports = {"map": PortSpec("map", "Map")}
     for field, kind in draft.fields.items():
-        optional = field != "depth" or empty
+        optional = absent[field]
         ports[field] = PortSpec(field, kind.name, kind.array, optional)
         confidence = f"{field}_confidence"
         ports[confidence] = PortSpec(confidence, "Confidence", KINDS["Confidence"].array, optional)
     for field, name in _DERIVED.items():
-        ports[field] = PortSpec(field, name, KINDS[name].array, optional=field == "regions" or empty)
+        optional = absent["boundaries" if field == "regions" else "depth"]
+        ports[field] = PortSpec(field, name, KINDS[name].array, optional)
     return ports
 
 
-def _starts_without_depth(spec: GraphSpec) -> bool:
-    if spec.hub is not None:
-        return spec.hub.start.get("depth", "plane") is None
-    return any(node.uses == BEGIN and node.with_.get("depth") == "none" for node in spec.nodes.values())
+def _starts_with(spec: GraphSpec, field: str) -> bool:
+    """Whether a field of the map always has a value; one from a reference may be absent, depth apart."""
+    begins = [spec.hub.start] if spec.hub else [one.with_ for one in spec.nodes.values() if one.uses == BEGIN]
+    starts = [begin.get(field, "plane" if field == "depth" else None) for begin in begins]
+    given = [start for start in starts if start not in (None, "none")]
+    return (
+        bool(starts) and len(given) == len(starts) and (field == "depth" or not any(map(_is_reference, given)))
+    )
+
+
+def _is_reference(start: object) -> bool:
+    return isinstance(start, str) and start != "plane"
 
 
 def _map_callee(draft: Draft, uses: str) -> Callee:

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
-from typing import Any
 
 import networkx as nx
-from pydantic import ValidationError
 
 from visint.errors import Problem
 from visint.graph.callees import BEGIN, COMMIT
 from visint.graph.complaints import shown
+from visint.graph.control_checks import controls_set_parameters
 from visint.graph.draft import Draft
 from visint.graph.graph import INPUTS, Edge, Graph, Node
 from visint.graph.loop_checks import LOOP_RULES, loops_exist
+from visint.graph.write import as_written
 from visint.module import PortSpec
 from visint.names import did_you_mean, listed
 
@@ -38,9 +38,9 @@ def no_circle_without_feedback(graph: Graph, draft: Draft) -> Found:
         path, port, edge = next(one for one in _reads(graph.nodes[target]) if one[2].source.node == last)
         found = "nodes feed each other in a circle: " + " → ".join([*circle, target])
         start = "none" if graph.nodes[target].callee.inputs[port].optional else "0"
-        write = (
-            f"feedback: {{{port}: {{from: {edge.source}, start: {start}}}}}   (on {target!r}, instead of 'in')"
-        )
+        loops = [{*graph.loops_around(graph.nodes[name].loop)} for name in circle]
+        how = "instead of 'in'" + ("" if set.intersection(*loops) else "; and a loop around them")
+        write = f"feedback: {{{port}: {{from: {edge.source}, start: {start}}}}}   (on {target!r}, {how})"
         if path[0] == "feedback":
             write = "start: none   (or a reference that does not depend on this node)"
         yield Problem("VI207", found, draft.where("nodes", target, *path), write=write)
@@ -155,13 +155,16 @@ def the_map_starts_with_its_fields(graph: Graph, draft: Draft) -> Found:
             if kind is None:
                 near = did_you_mean(field, draft.fields) or "depth"
                 found, known = f"the map stores no field {field!r}", "fields: " + listed(draft.fields)
-                yield Problem("VI215", found, where, known, f"{near}: {shown(start).strip(chr(39))}")
+                yield Problem("VI215", found, where, known, f"{near}: {as_written(start)}")
             elif start == "plane" and kind.name not in _PLANES:
                 found = f"'plane' is a start for Depth or Disparity; {field!r} is {kind.name}"
                 yield Problem("VI215", found, where, "starts: none, a number, or node.port", f"{field}: none")
             elif not (start in ("none", "plane") or isinstance(start, int | float)):
                 found = f"{shown(start)} is no start for {field!r}"
-                yield Problem("VI215", found, where, "starts: none, a number, plane", f"{field}: none")
+                right = "plane" if kind.name in _PLANES else "none"
+                yield Problem(
+                    "VI215", found, where, "starts: none, a number, plane, node.port", f"{field}: {right}"
+                )
 
 
 def limited_nodes_feed_optional_ports(graph: Graph, draft: Draft) -> Found:
@@ -178,6 +181,9 @@ def limited_nodes_feed_optional_ports(graph: Graph, draft: Draft) -> Found:
                 levels = f"[{listed(map(str, source.levels), none='')}]"
                 found = f"{source.name!r} runs at levels {levels} only, and {port!r} must always be fed"
                 write = f"levels: {levels}   (on {name!r})"
+                if graph.pyramid_around(node.loop) != graph.pyramid_around(source.loop):
+                    levels = f"[{listed(map(str, sorted({0, *source.levels})), none='')}]"
+                    write = f"levels: {levels}   (on {source.name!r}: from outside one sees level 0)"
                 yield Problem("VI213", found, draft.where("nodes", name, key, port), write=write)
 
 
@@ -200,50 +206,6 @@ def writers_of_the_map_stand_in_order(graph: Graph, draft: Draft) -> Found:
             found = f"{first!r} and {name!r} both commit to {edge.source}, in no order"
             where = draft.where("nodes", name, "in", "map")
             yield Problem("VI212", found, where, write=f"map: {first}.map")
-
-
-def controls_set_parameters(graph: Graph, draft: Draft) -> Found:
-    """A control sets parameters that there are, to values that they can have."""
-    for control, settings in graph.spec.controls.items():
-        for key, value in settings.items():
-            said, choices, write = _control_fault(graph, key, value)
-            if said:
-                where = draft.where("controls", control, key, key=True)
-                yield Problem("VI219", said, where, choices, f"{control}: {{{write}: {shown(value)}}}")
-
-
-def _control_fault(graph: Graph, key: str, value: Any) -> tuple[str, str, str]:
-    name, _, param = key.partition(".")
-    with_params = {one: _names(node) for one, node in graph.nodes.items() if _names(node)}
-    node = graph.nodes.get(name)
-    if node is None:
-        near = did_you_mean(name, with_params)
-        right = did_you_mean(param, with_params[near]) or with_params[near][0] if near else "parameter"
-        return f"there is no node {name[:70]!r}", "nodes: " + listed(with_params), f"{near or 'node'}.{right}"
-    known = _names(node)
-    if node.callee.module is None or param not in known:
-        found = f"{name!r} ({node.callee.id}) has no parameter {param[:70]!r}"
-        near = did_you_mean(param, known) or next(iter(known), None)
-        return (
-            found,
-            f"parameters of {name!r}: " + listed(known),
-            f"{name}.{near}" if near else "node.parameter",
-        )
-    try:
-        node.callee.module.Params.model_validate({**_set_already(node), param: value})
-    except ValidationError as error:
-        said = str(error.errors(include_input=False, include_url=False)[0]["msg"])
-        found = f"found {shown(value)}; " + said.replace("Input should be", "should be")
-        return found, f"parameters of {name!r}: " + listed(known), key
-    return "", "", ""
-
-
-def _names(node: Node) -> list[str]:
-    return list(node.callee.module.Params.model_fields) if node.callee.module else []
-
-
-def _set_already(node: Node) -> dict[str, Any]:
-    return {name: getattr(node.params, name) for name in _names(node)}
 
 
 RULES: tuple[Rule, ...] = (

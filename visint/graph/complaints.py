@@ -11,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 from visint.errors import Problem, Where
 from visint.graph.examples import CHILDREN, EXAMPLES, MEMBERS
 from visint.graph.spec import GraphSpec
+from visint.graph.write import as_written
 from visint.names import did_you_mean, listed
 
 __all__ = ["complaints", "keys_of", "shown"]
@@ -36,14 +37,20 @@ def shown(value: Any) -> str:
 
 def complaints(error: ValidationError, data: Any, where: Finder) -> list[Problem]:
     """One problem for each place that pydantic complains about, in the order of the file."""
-    found: dict[Path, Problem] = {}
+    found: dict[Path, tuple[str, Problem]] = {}
     for item in error.errors(include_input=False, include_url=False):
         path = _path_in(data, item["loc"], item["type"])
         if item["loc"][-1:] == ("str",) and isinstance(_at(data, path), list):
             continue  # text or a list may stand here; what is wrong with the list is told by itself
         if path not in found:
             found[path] = _problem(item, path, data, where)
-    return sorted(found.values(), key=lambda problem: (problem.where.line, problem.where.column))
+    meant = {
+        (*path[:-1], near)
+        for path, (near, _) in found.items()
+        if near  # a typo is told once, not as missing too
+    }
+    told = [problem for path, (near, problem) in found.items() if near or path not in meant]
+    return sorted(told, key=lambda problem: (problem.where.line, problem.where.column))
 
 
 def _path_in(data: Any, loc: tuple[int | str, ...], kind: str) -> Path:
@@ -98,27 +105,28 @@ def _spot(path: Path) -> _Spot:
     return _Spot(model, key, member)
 
 
-def _problem(item: Any, path: Path, data: Any, where: Finder) -> Problem:
-    spot = _spot(path)
+def _problem(item: Any, path: Path, data: Any, where: Finder) -> tuple[str, Problem]:
+    """The key that was meant, for an unknown key; and the problem."""
+    spot, value = _spot(path), _at(data, path)
     if item["type"] == "extra_forbidden":
-        return _unknown_key(spot, path, where)
+        return _unknown_key(spot, path, value, where)
     if item["type"] == "missing":
         choices = "keys here: " + listed(keys_of(spot.model))
-        return Problem("VI105", f"the key {path[-1]!r} is missing", where(*path), choices, spot.example)
+        return "", Problem("VI105", f"the key {path[-1]!r} is missing", where(*path), choices, spot.example)
     if item["loc"][-1] == "[key]":
         found = f"the key {shown(path[-1])} {_wanted(item)}"
-        return Problem("VI105", found, where(*path, key=True), write=spot.example)
-    value = _at(data, path)
+        write = f"{spot.key}: {EXAMPLES[spot.model].get(spot.key, '…')}"
+        return "", Problem("VI105", found, where(*path, key=True), write=write)
     choices, write = _choice(item, spot, value)
-    return Problem("VI105", f"found {shown(value)}; {_wanted(item)}", where(*path), choices, write)
+    return "", Problem("VI105", f"found {shown(value)}; {_wanted(item)}", where(*path), choices, write)
 
 
-def _unknown_key(spot: _Spot, path: Path, where: Finder) -> Problem:
+def _unknown_key(spot: _Spot, path: Path, value: Any, where: Finder) -> tuple[str, Problem]:
     known = keys_of(spot.model)
-    near = did_you_mean(spot.key, known)
-    example = f"{near}: {EXAMPLES[spot.model].get(near, '…')}" if near else "(nothing: leave the key out)"
-    found = f"there is no key {path[-1]!r} here"
-    return Problem("VI105", found, where(*path, key=True), "keys here: " + listed(known), example)
+    near = did_you_mean(spot.key, known) or ""
+    write = f"{near}: {as_written(value)}" if near else "(nothing: leave the key out)"
+    found, choices = f"there is no key {path[-1]!r} here", "keys here: " + listed(known)
+    return near, Problem("VI105", found, where(*path, key=True), choices, write)
 
 
 def _choice(item: Any, spot: _Spot, value: Any) -> tuple[str, str]:
@@ -127,15 +135,14 @@ def _choice(item: Any, spot: _Spot, value: Any) -> tuple[str, str]:
     if words:
         near = did_you_mean(str(value), words) or words[0]
         return "choices: " + listed(words), f"{spot.member or spot.key}: {near}"
-    if item["type"] in ("model_type", "model_attributes_type") and isinstance(value, str) and spot.member:
-        return "", _instead_of_text(spot, value)
+    if isinstance(value, str) and "." in value and item["type"] in ("model_type", "dict_type"):
+        if spot.member and spot.key in ("nodes", "spokes", "reconcile"):
+            return "", f"{spot.member}: {{uses: {as_written(value)}}}"
+        if spot.key == "in" and not spot.member:
+            return "", f"in: {{port: {as_written(value)}}}"
+    if item["type"] == "too_long":
+        return "", f"{spot.member or spot.key}: {as_written(value[:1])}"
     return "", spot.example
-
-
-def _instead_of_text(spot: _Spot, text: str) -> str:
-    """``match: stereo.sgm`` was meant as a module's name, most likely."""
-    written = f"{spot.member}: {{uses: {text}}}"
-    return written if spot.key in ("nodes", "spokes", "reconcile") and "." in text else spot.example
 
 
 _WANTED = {
@@ -150,6 +157,7 @@ _WANTED = {
     "float_type": "should be a number",
     "float_parsing": "should be a number",
     "too_long": "should have one member",
+    "too_short": "should have at least one member",
 }
 
 

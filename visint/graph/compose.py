@@ -117,7 +117,8 @@ class _Composer:
         data = self._value(self._next(), ())
         self._next()  # the document ends
         if type(extra := self._next()).__name__ == "DocumentStartEvent":
-            raise self._error("VI105", "a graph file holds one document; a second begins here", extra, ())
+            found = "a graph file holds one document; a second begins here"
+            raise self._error("VI105", found, extra, (), "(each graph in a file of its own)")
         return data
 
     def _next(self) -> Any:
@@ -131,7 +132,8 @@ class _Composer:
         self.values[path] = _mark(event)
         self._plain_yaml(event, path)
         if len(path) > DEEPEST:
-            raise self._error("VI107", f"values nested deeper than {DEEPEST}", event, path[:3])
+            found = f"values nested deeper than {DEEPEST}"
+            raise self._error("VI107", found, event, path[:3], "key: value   (graphs are flat)")
         kind = type(event).__name__
         if kind == "MappingStartEvent":
             return self._mapping(path)
@@ -185,13 +187,13 @@ class _Composer:
     def _plain_yaml(self, event: Any, path: Path) -> None:
         if type(event).__name__ == "AliasEvent":
             found = f"graph files have no aliases (*{event.anchor[:40]})"
-            raise self._error("VI103", found, event, path, "(the value itself)")
+            raise self._error("VI103", found, event, path, f"{_last(path)}…   (the value itself)")
         if getattr(event, "anchor", None):
             found = f"graph files have no anchors (&{event.anchor[:40]})"
-            raise self._error("VI103", found, event, path, "(the value alone)")
+            raise self._error("VI103", found, event, path, f"{_last(path)}{_alone(event)}")
         if getattr(event, "tag", None):
             found = f"graph files have no tags ({str(event.tag)[:60]})"
-            raise self._error("VI103", found, event, path, "(the value alone)")
+            raise self._error("VI103", found, event, path, f"{_last(path)}{_alone(event)}")
 
     def _error(self, code: str, found: str, event: Any, path: Path, write: str = "") -> GraphError:
         place = Where(self.file, *_mark(event), ".".join(map(str, path)))
@@ -200,3 +202,13 @@ class _Composer:
 
 def _mark(event: Any) -> Mark:
     return Mark(event.start_mark.line + 1, event.start_mark.column + 1)
+
+
+def _last(path: Path) -> str:
+    return f"{path[-1]}: " if path else ""
+
+
+def _alone(event: Any) -> str:
+    """A value as it would be written without tag or anchor."""
+    kinds = {"MappingStartEvent": "{…}", "SequenceStartEvent": "[…]"}
+    return kinds.get(type(event).__name__) or str(event.value)[:60]

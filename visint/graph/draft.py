@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from visint.errors import GraphError, PluginError, Problem, Where
 from visint.fields.kinds import FieldKind
-from visint.graph.graph import INPUTS, Callee
+from visint.graph.graph import INPUTS, MAP, Callee
 from visint.graph.read import Places
 from visint.graph.spec import GraphSpec, InputSpec
 from visint.module import PortSpec
@@ -75,7 +75,8 @@ class Draft:
         if parsed.node not in self.spec.nodes:
             near = did_you_mean(parsed.node, [*self.spec.nodes, INPUTS])
             write = self._port_near(near, parsed.port) if near else self._giving(parsed.port)
-            self._say_lost(f"there is no node {parsed.node!r}", where, self._nodes(), write)
+            found = f"there is no node {parsed.node!r}" + " without a hub" * (parsed.node == MAP)
+            self._say_lost(found, where, self._nodes(), write)
             return None
         return self._from_node(parsed, where)
 
@@ -135,4 +136,11 @@ class Draft:
         return f"outputs of {node!r} ({callee.id}): {ports}"
 
     def _nodes(self) -> str:
-        return "nodes: " + listed([*self.spec.nodes, INPUTS])
+        """The nodes to choose from: those of the file, and the map where there is one."""
+        return "nodes: " + listed([*(name for name in self.spec.nodes if not self._is_inner(name)), INPUTS])
+
+    def _is_inner(self, node: str) -> bool:
+        """Whether a node is one that only the expansion of a hub has."""
+        return (
+            node in self.origins and self.spec.nodes[node].uses in ("map.begin", "map.commit") and node != MAP
+        )

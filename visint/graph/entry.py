@@ -11,7 +11,7 @@ from visint.graph.graph import Callee
 from visint.graph.ports import reader_between
 from visint.graph.spec import NodeSpec, SpokeSpec, StepSpec
 from visint.module import PortSpec
-from visint.names import listed
+from visint.names import did_you_mean, listed
 
 __all__ = ["enter", "reconcile_fields"]
 
@@ -30,6 +30,7 @@ class _Stage(NamedTuple):
 def enter(expansion: Expansion, name: str, spoke: SpokeSpec, port: PortSpec, stem: str) -> Refs:
     """Writes the steps by which one evidence port of a spoke enters the map; gives the fields to commit."""
     field = expansion.field_of(port)
+    expansion.spoken_of[field] = None
     path = ("hub", "spokes", name)
     cohere = _step(expansion, port, "cohere", spoke.cohere, "none")
     evidence = Evidence(f"{name}.{port.name}", port)
@@ -54,8 +55,9 @@ def reconcile_fields(expansion: Expansion) -> None:
         where = expansion.draft.where(*path, key=True)
         evidence = expansion.pending.get(field, [])
         if not evidence:
-            has = "fields with evidence: " + listed(expansion.pending)
-            write = f"{next(iter(expansion.pending), 'depth')}: {{uses: {step.uses}}}"
+            has = "fields with evidence: " + listed(expansion.spoken_of)
+            near = did_you_mean(field, expansion.spoken_of) or next(iter(expansion.spoken_of), "depth")
+            write = f"{near}: {{uses: {step.uses or 'plugin.module'}}}"
             expansion.draft.say("VI222", f"no spoke gives evidence on {field!r}", where, has, write)
         elif step.uses is None or step.uses in BUILT_IN:
             found = f"{field!r} is reconciled from all its evidence together, which takes a module"
@@ -109,7 +111,10 @@ def _write(expansion: Expansion, stage: _Stage, evidence: Sequence[Evidence]) ->
     callee = find_callee(expansion.draft, str(step.uses), expansion.draft.where(*stage.path, "uses"))
     if callee is None:
         return None
-    own = {**step.in_, **_taken(expansion, stage, callee, evidence)}
+    taken = _taken(expansion, stage, callee, evidence)
+    if taken is None:
+        return None
+    own = {**step.in_, **taken}
     refs = expansion.bound(callee, own, set(), _other_outputs(expansion, stage.spoke), stage.path)
     spoke = expansion.nodes.get(stage.spoke)
     node = NodeSpec(
@@ -124,8 +129,12 @@ def _write(expansion: Expansion, stage: _Stage, evidence: Sequence[Evidence]) ->
     return callee
 
 
-def _taken(expansion: Expansion, stage: _Stage, callee: Callee, evidence: Sequence[Evidence]) -> Refs:
-    """Which port takes which evidence: the first of its very kind, else one for evidence of any kind."""
+def _taken(expansion: Expansion, stage: _Stage, callee: Callee, evidence: Sequence[Evidence]) -> Refs | None:
+    """Which port takes which evidence: the first of its very kind, else one for evidence of any kind.
+
+    None, with a problem noted, if there is evidence that no port takes.
+    """
+    draft = expansion.draft
     refs: Refs = {}
     for ref, port in evidence:
         takes = [spec for spec in callee.inputs.values() if spec.evidence and reader_between(port, spec)]
@@ -137,10 +146,13 @@ def _taken(expansion: Expansion, stage: _Stage, callee: Callee, evidence: Sequen
             name = free[0].name
             refs[name] = (*refs.get(name, ()), ref) if free[0].many else ref
         else:
-            found = f"{callee.id} takes {'only one' if takes else 'no'} {port}, and {ref} is one"
+            what = f"only one {port}, and {ref} is another" if takes else f"no {port}, which {ref} is"
+            found = f"{callee.id} takes {what}"
             choices = f"inputs of {callee.id}: " + listed(f"{n}: {s}" for n, s in callee.inputs.items())
-            where = expansion.draft.where(*stage.path)
-            expansion.draft.say("VI222", found, where, choices, f"{stage.path[-1]}: {{uses: plugin.module}}")
+            draft.say(
+                "VI222", found, draft.where(*stage.path), choices, f"{stage.path[-1]}: {{uses: plugin.module}}"
+            )
+            return None
     return refs
 
 

@@ -30,7 +30,8 @@ class Evidence(NamedTuple):
 class Expansion:
     """The plain graph as far as it is written.
 
-    ``current`` is the node that is the map now; ``pending`` the evidence kept for the reconciler of a field.
+    ``current`` is the node that is the map now; ``pending`` the evidence kept for the reconciler of a field;
+    ``spoken_of`` the fields that any spoke gives evidence on.
     """
 
     draft: Draft
@@ -41,12 +42,15 @@ class Expansion:
     callees: dict[str, Callee] = field(default_factory=dict)
     current: str = "map_begin"
     pending: dict[str, list[Evidence]] = field(default_factory=dict)
+    spoken_of: dict[str, None] = field(default_factory=dict)
 
     def add(self, name: str, spec: NodeSpec, callee: Callee | None, origin: Path) -> str:
         """Writes a node; ``origin`` is the part of the hub that it stands for."""
         if name in self.draft.spec.nodes or name in self.nodes:
+            taken = name in self.draft.spec.nodes
             found = f"the hub calls a node of its own {name!r}; that name is taken"
-            self.draft.say("VI223", found, self.draft.where(*origin), write=f"{origin[-1]}_2:")
+            place = ("nodes", name) if taken else origin[:3]
+            self.draft.say("VI223", found, self.draft.where(*place, key=True), write=f"{place[-1]}_2: …")
         self.nodes[name] = spec
         self.origins[name] = origin
         if callee is not None:

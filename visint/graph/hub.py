@@ -72,7 +72,7 @@ def _policy(draft: Draft, hub: HubSpec) -> Mapping[str, Mapping[str, Any]]:
     where = draft.where("hub", "uses")
     if plugin not in draft.catalog.plugin_names:
         near = did_you_mean(plugin, draft.catalog.plugin_names)
-        write = f"uses: {near}.{name}" if near else ""
+        write = f"uses: {near}.{name}" if near else "pip install …   (the plugin that brings it)"
         choices = "plugins: " + listed(draft.catalog.plugin_names)
         draft.say("VI201", f"no plugin is named {plugin!r}", where, choices, write)
         return {}
@@ -96,7 +96,7 @@ def _begin(expansion: Expansion) -> None:
     refs: Refs = {}
     starts: dict[str, Any] = {}
     for name, start in hub.start.items():
-        if isinstance(start, str) and start != "plane":
+        if isinstance(start, str) and "." in start:
             refs[name] = start
         else:
             starts[name] = "none" if start is None else start

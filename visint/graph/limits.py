@@ -48,7 +48,7 @@ def refuse_monsters(text: str, file: str) -> None:
     ):
         long = pattern.search(text)
         if long is not None:
-            raise _beyond(file, text, long.start(), what)
+            raise _beyond(file, text, long.start(), what, "(a shorter text)")
     if text.count("\n") > LONGEST or sum(1 for _ in _SPLITS.finditer(text)) > 2 * LONGEST:
         raise _beyond(file, text, 0, f"more than {LONGEST} values or lines")
 
@@ -62,9 +62,10 @@ def _refuse_depth(text: str, file: str) -> None:
             raise _beyond(file, text, bracket.start(), f"values nested deeper than {DEEPEST}")
 
 
-def _beyond(file: str, text: str, at: int, what: str) -> GraphError:
+def _beyond(
+    file: str, text: str, at: int, what: str, write: str = "uses: graph:NAME   (parts in files of their own)"
+) -> GraphError:
     found = f"{what}: more than a graph file may have"
-    write = "uses: graph:NAME   (a part of the graph in a file of its own)"
     return GraphError(Problem("VI107", found, _spot(file, text, at), write=write))
 
 

@@ -42,7 +42,7 @@ def load(source: str | PathLike[str] | Graph, catalog: Catalog | None = None) ->
 
 def load_named(name: str, catalog: Catalog, calling: tuple[str, ...] = ()) -> Graph:
     """The installed graph ``name``; ``calling`` are the graphs being bound around it."""
-    return _load_file(find_named(name, catalog), catalog, calling)
+    return _load_file(find_named(name, catalog), catalog, (*calling, name))
 
 
 def find_named(name: str, catalog: Catalog) -> Path:

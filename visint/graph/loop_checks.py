@@ -8,7 +8,7 @@ import networkx as nx
 
 from visint.errors import Problem
 from visint.graph.draft import Draft
-from visint.graph.graph import Edge, Graph
+from visint.graph.graph import MAP, Edge, Graph
 from visint.module import PortSpec
 from visint.names import did_you_mean, listed
 
@@ -20,7 +20,8 @@ Found = Iterator[Problem]
 def loops_exist(graph: Graph, draft: Draft) -> Found:
     """Every loop that is named is declared, and loops lie inside each other without a circle."""
     named: list[tuple[tuple[str, ...], str | None]]
-    named = [(("nodes", name, "loop"), node.loop) for name, node in graph.nodes.items()]
+    own = [(name, node) for name, node in graph.nodes.items() if name not in draft.origins]
+    named = [(("nodes", name, "loop"), node.loop) for name, node in own]
     named += [(("loops", name, "inside"), loop.spec.inside) for name, loop in graph.loops.items()]
     if graph.spec.hub:
         named.append((("hub", "loop"), graph.spec.hub.loop))
@@ -93,7 +94,7 @@ def _ends(graph: Graph, loop: str, key: str) -> list[str]:
     return [
         f"{name}.{port}"
         for name, node in graph.nodes.items()
-        if loop in graph.loops_around(node.loop)
+        if loop in graph.loops_around(node.loop) and (node.callee.module or node.callee.graph or name == MAP)
         for port, spec in node.callee.outputs.items()
         if (_is_flag(spec) if key == "holds" else _is_number(spec))
     ]
@@ -115,7 +116,8 @@ def _unsound(graph: Graph, draft: Draft, path: tuple[str, ...], edge: Edge | Non
     if node is not None and path[1] in graph.loops_around(node.loop):
         wanted = "a Flag" if path[-1] == "holds" else "numbers"
         found = f"{edge.source} is {node.callee.outputs[edge.source.port]}; {path[-1]!r} wants {wanted}"
-    near = did_you_mean(str(edge.source), ends) or next(iter(ends), "node.port")
+    same_node = [end for end in ends if end.startswith(f"{edge.source.node}.")]
+    near = next(iter([*same_node, *ends]), "node.port")
     yield Problem("VI216", found, draft.where(*path), "what fits: " + listed(ends), f"{path[-1]}: {near}")
 
 

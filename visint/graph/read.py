@@ -48,7 +48,9 @@ def read_graph(path: Path) -> Source:
 def _unreadable(problem: Problem) -> Problem:
     code = "VI107" if problem.code == "VI303" else "VI101"
     place = Where(problem.where.file, problem.where.line or 1, problem.where.column or 1)
-    return Problem(code, problem.found, place, problem.choices, problem.write or "visint run ./my_graph.yaml …")
+    empty = problem.found == "is empty"
+    write = f"visint: {VERSION}" if empty else "(the file, saved as UTF-8)" if problem.code == "VI302" else ""
+    return Problem(code, f"the file {problem.found}", place, problem.choices, problem.write or write)
 
 
 def parse(text: str, file: str = "graph") -> Source:

@@ -6,10 +6,12 @@ from collections.abc import Iterator
 
 from visint.errors import Where
 from visint.fields.kinds import KINDS, FieldKind
+from visint.graph.callees import BEGIN, COMMIT
 from visint.graph.draft import Draft
 from visint.graph.graph import INPUTS, Callee, Edge, Feedback
 from visint.graph.ports import reader_between
 from visint.graph.spec import FeedbackSpec, NodeSpec
+from visint.graph.write import as_written
 from visint.module import PortSpec
 from visint.names import PortRef, did_you_mean, listed
 
@@ -40,12 +42,13 @@ class Wiring:
         self._name = name
         self._node = node
         self._callee = callee
+        self._meant: set[str] = set()  # the ports that a misspelled one was to be
 
     def ins(self) -> dict[str, Edge | tuple[Edge, ...]]:
         """The edges of ``in``, by port; several for a list."""
         ins: dict[str, Edge | tuple[Edge, ...]] = {}
         for port, refs in self._node.in_.items():
-            target = self._target("in", port, refs if isinstance(refs, str) else "[…]")
+            target = self._target("in", port, as_written(refs))
             if target is None:
                 continue
             where = self._draft.where("nodes", self._name, "in", port)
@@ -73,7 +76,8 @@ class Wiring:
         """The edges of ``feedback``, by port."""
         for port, spec in self._node.feedback.items():
             path = ("nodes", self._name, "feedback", port)
-            target = self._target("feedback", port, "{…}")
+            given = spec.model_dump(by_alias=True, exclude_defaults=True)
+            target = self._target("feedback", port, as_written(given))
             if target is None:
                 continue
             if port in self._node.in_:
@@ -88,7 +92,7 @@ class Wiring:
     def check_fed(self) -> None:
         """Notes every required port that nothing feeds."""
         for port, spec in self._callee.inputs.items():
-            fed = port in self._node.in_ or port in self._node.feedback
+            fed = port in self._node.in_ or port in self._node.feedback or port in self._meant
             if spec.optional or fed or self._has_default(port):
                 continue
             found = f"{self._callee.id} needs {port!r} ({spec}), and nothing feeds it"
@@ -105,7 +109,8 @@ class Wiring:
         if port in inputs:
             return inputs[port]
         free = [one for one in inputs if one not in self._node.in_ and one not in self._node.feedback]
-        near = did_you_mean(port, free) or did_you_mean(port, inputs) or next(iter(free), None)
+        near = did_you_mean(port, free) or did_you_mean(port, inputs) or next(iter(free), "")
+        self._meant.add(near)
         found = f"{self._callee.id} has no input {port!r}"
         choices = f"inputs of {self._name!r} ({self._callee.id}): " + listed(
             f"{name}: {spec}" for name, spec in inputs.items()
@@ -128,19 +133,27 @@ class Wiring:
         if spec.optional and not (target.optional or target.many):
             said = f"{target.name!r} must be fed, but {ref!r} is optional and may be absent"
             sure = [one for one in self._fitting(target, sure=True) if one != ref]
-            kind = f"{spec.kind}   (among the graph's inputs, without '?')"
-            write = (
-                f"{source.port}: {kind}" if source.node == INPUTS else f"{target.name}: {next(iter(sure), '…')}"
-            )
+            write = self._always(source, spec) or f"{target.name}: {next(iter(sure), 'node.port')}"
             self._draft.say("VI204", said, where, "what would fit: " + listed(sure), write)
         return Edge(source, reader, KINDS["Image"] if reader == "luminance" else _kind(self._draft, spec))
+
+    def _always(self, source: PortRef, spec: PortSpec) -> str:
+        """How a source that may be absent would always be there: an input, or a field of the map."""
+        if source.node == INPUTS:
+            return f"{source.port}: {spec.kind}   (among the graph's inputs, without '?')"
+        if self._draft.spec.nodes[source.node].uses not in (BEGIN, COMMIT):
+            return ""
+        field = source.port.removesuffix("_confidence")
+        if field not in self._draft.fields:  # a derived one
+            field = "boundaries" if field == "regions" else "depth"
+        return f"start: {{{field}: {'plane' if field == 'depth' else 0}}}   (on the hub)"
 
     def _misfit(self, source: PortRef, spec: PortSpec, target: PortSpec, where: Where) -> None:
         found = f"wants {target}; {str(source)!r} is {spec}"
         fits_singly = reader_between(spec, target) is not None and target.many and not spec.many
-        write = (
-            f"{target.name}: [{source}]" if fits_singly else f"{target.name}: {self._best(target, source.node)}"
-        )
+        right = f"[{source}]" if fits_singly else self._best(target, source.node)
+        key = where.path.rpartition(".")[2]
+        write = right if key.isdigit() else f"{key}: {right}"
         self._draft.say("VI203", found, where, self._draft.outputs_of(source.node), write)
 
     def _best(self, target: PortSpec, node: str = "") -> str:
@@ -194,9 +207,12 @@ class Wiring:
         common = [loop for loop in ours if loop in theirs]
         if common:
             return common[-1]
+        if {self._node.loop, source.loop if source else None} - {None} - {*draft.spec.loops}:
+            return None  # a loop that there is not: told by itself
         found = f"{self._name!r} and {spec.from_!r} lie in no common loop, so there is no turn before"
         loop = self._node.loop or (source.loop if source else None) or next(iter(draft.spec.loops), "")
-        both = f"(on {self._name!r} and on {spec.from_.partition('.')[0]!r})"
+        ends = dict.fromkeys([self._name, spec.from_.partition(".")[0]])
+        both = "(on " + " and on ".join(map(repr, ends)) + ")"
         write = (
             f"loop: {loop}   {both}" if loop else f"loops: {{sweeps: {{times: 20}}}}   and loop: sweeps {both}"
         )
@@ -213,6 +229,12 @@ class Wiring:
         return chain[::-1]
 
     def _start(self, spec: FeedbackSpec, target: PortSpec, path: tuple[str, ...]) -> float | str | Edge | None:
+        if isinstance(spec.start, str) and "." not in spec.start and spec.start != "plane":
+            near = did_you_mean(spec.start, ["plane", "none"]) or "0"
+            choices = "starts: none, a number, plane, or node.port from outside the loop"
+            where = self._draft.where(*path, "start")
+            self._draft.say("VI215", f"{spec.start[:70]!r} is no start", where, choices, f"start: {near}")
+            return None
         if isinstance(spec.start, str) and spec.start != "plane":
             return self._edge(spec.start, self._draft.where(*path, "start"), target)
         return spec.start

@@ -8,7 +8,7 @@ from typing import Any
 
 from visint.graph.spec import GraphSpec
 
-__all__ = ["to_yaml"]
+__all__ = ["as_written", "to_yaml"]
 
 _WIDE = 100
 _BARE = re.compile(r"[A-Za-z_/][A-Za-z0-9_./?:-]*(?<!:)\Z")
@@ -29,6 +29,14 @@ def _mapping(data: Mapping[Any, Any], indent: int) -> Iterator[str]:
             yield from _mapping(value, indent + 2)
         else:
             yield f"{head} {flow}"
+
+
+def as_written(value: Any) -> str:
+    """A value as a line to paste has it; long ones are cut to a sign that there was more."""
+    text = _flow(value)
+    if len(text) <= _WIDE:
+        return text
+    return "{…}" if isinstance(value, dict) else "[…]" if isinstance(value, list) else "…"
 
 
 def _flow(value: Any) -> str:
