@@ -59,6 +59,7 @@ class Call:
         "_invoke",
         "_levels",
         "_lists",
+        "_never_none",
         "_note",
         "_outs",
         "_per_turn",
@@ -71,6 +72,8 @@ class Call:
         self.node = step.node
         self._singles = tuple((port, slot) for port, slot in step.ins if isinstance(slot, int))
         self._lists = tuple((port, slot) for port, slot in step.ins if not isinstance(slot, int))
+        inputs = step.node.callee.inputs
+        self._never_none = tuple(p for p, _ in self._singles if inputs[p].many and not inputs[p].optional)
         self._outs = step.outs
         self._levels = None if step.node.levels is None else frozenset(step.node.levels)
         self._per_turn = step.node.callee.module is None or per_turn(step.node)
@@ -101,6 +104,9 @@ class Call:
         values = self._defaults.copy()
         for port, source in self._singles:
             values[port] = slots[source]
+        for port in self._never_none:
+            if values[port] is None:
+                values[port] = ()  # a list that a node limited to some levels gives is empty elsewhere
         for port, sources in self._lists:
             values[port] = tuple([one for slot in sources if (one := slots[slot]) is not None])
         outputs = self._timed(state, frame, values)
