@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from typing import Any
 
 from visint import io
-from visint.errors import InputError, UsageError
+from visint.errors import InputError, Problem, UsageError
 from visint.fields.camera import Camera
 from visint.fields.light import Light
-from visint.graph.graph import Graph
+from visint.graph.graph import INPUTS, Graph, Node
 from visint.graph.spec import InputSpec
+from visint.io.files import silent
+from visint.names import did_you_mean, listed
 from visint.results.provenance import Source
 
-__all__ = ["numbers", "read_sources"]
+__all__ = ["Say", "numbers", "read_sources"]
+
+Say = Callable[[str, str], None]
+"""Told the name of an input and one sentence: what reading it changed."""
+
+_SHORT = {"left": "--left PATH", "right": "--right PATH", "camera": "--calib PATH", "light": "--light x,y,z"}
 
 
-def read_sources(graph: Graph, sources: Mapping[str, Source]) -> dict[str, Any]:
+def read_sources(graph: Graph, sources: Mapping[str, Source], say: Say | None = None) -> dict[str, Any]:
     """The values of the inputs named in ``sources``; all problems together.
 
     An image is read as the graph wants it (a colour file as luminance for an ``Image``). A camera is read
@@ -26,45 +34,89 @@ def read_sources(graph: Graph, sources: Mapping[str, Source]) -> dict[str, Any]:
     Raises
     ------
     InputError
-        VI301 to VI306.
+        VI301 to VI306; VI304 too for what is missing or not wanted, VI307 for images of different sizes
+        that meet in a node.
     UsageError
         VI701 where a text is not what its kind wants.
     """
     values: dict[str, Any] = {}
-    problems: list[InputError] = []
-    later = []
-    for name, source in sources.items():
-        spec = graph.inputs.get(name)
-        if spec is not None and spec.kind == "Camera":
-            later.append((name, source))
+    problems = [*_not_wanted(graph, sources), *_missing(graph, sources)]
+    for name in sorted(sources, key=lambda name: _kind(graph, name) == "Camera"):  # it may want a size
+        if name not in graph.inputs:
             continue
         try:
-            values[name] = _read(name, spec, source)
+            values[name] = _read(name, graph.inputs[name], sources[name], values, say)
         except InputError as error:
-            problems.append(error)
-    for name, source in later:
-        try:
-            values[name] = _camera(source, values)
-        except InputError as error:
-            problems.append(error)
+            problems += error.problems
+    problems += _misfits(graph, values)
     if problems:
-        raise InputError(problem for error in problems for problem in error.problems)
+        raise InputError(problems)
     return values
 
 
-def _read(name: str, spec: InputSpec | None, source: Source) -> Any:
-    if spec is None:
-        return None  # which inputs there are is said when the run begins
+def _kind(graph: Graph, name: str) -> str:
+    return graph.inputs[name].kind if name in graph.inputs else ""
+
+
+def _not_wanted(graph: Graph, sources: Mapping[str, Source]) -> Iterator[Problem]:
+    for name in sources:
+        if name not in graph.inputs:
+            choices = "inputs: " + listed(f"{one}: {spec}" for one, spec in graph.inputs.items())
+            near = None if name in _SHORT else did_you_mean(name, graph.inputs)
+            found = f"the graph {graph.name!r} has no input {name!r}"
+            yield Problem(
+                "VI304", found, choices=choices, write=f"--in {near}=PATH" if near else "", fault="input"
+            )
+
+
+def _missing(graph: Graph, sources: Mapping[str, Source]) -> Iterator[Problem]:
+    for name, spec in graph.inputs.items():
+        if name not in sources and not spec.optional:
+            write = _SHORT.get(name, f"--in {name}=PATH")
+            yield Problem("VI304", f"the input {name!r} ({spec}) is missing", write=write, fault="input")
+
+
+def _misfits(graph: Graph, values: Mapping[str, Any]) -> list[Problem]:
+    """Maps of pixels that meet in a node, and are not of one size."""
+    found: dict[str, None] = {}
+    for node in graph.nodes.values():
+        sizes = dict(_sizes(node, values))
+        for name, size in sizes.items():
+            first, wanted = next(iter(sizes.items()))
+            if size != wanted:
+                said = f"{wanted[1]} × {wanted[0]} and {size[1]} × {size[0]} pixels"
+                found[f"the inputs {first!r} and {name!r} are of different sizes: {said}"] = None
+    return [Problem("VI307", one, fault="input") for one in found]
+
+
+def _sizes(node: Node, values: Mapping[str, Any]) -> Iterator[tuple[str, tuple[int, int]]]:
+    for port, edge in node.edges():
+        array = node.callee.inputs[port].array
+        if edge.source.node != INPUTS or array is None or array.dims[:2] != ("H", "W"):
+            continue
+        name, value = edge.source.port, values.get(edge.source.port)
+        if isinstance(value, tuple):
+            yield from ((f"{name}[{i}]", one.shape[:2]) for i, one in enumerate(value))
+        elif value is not None:
+            yield name, value.shape[:2]
+
+
+def _read(name: str, spec: InputSpec, source: Source, values: Mapping[str, Any], say: Say | None) -> Any:
+    if spec.kind == "Camera":
+        return _camera(name, source, values)
     if spec.kind == "Light":
-        return _light(source.text or " ".join(source.paths))
+        return _light(source.text)
     if spec.kind in ("Scalar", "Flag", "Text"):
-        return _scalar(name, spec.kind, source.text or " ".join(source.paths))
-    read = [io.read(path, spec.kind, gamma=source.gamma) for path in source.paths]
-    if spec.many:
-        return tuple(read)
-    if len(read) != 1:
-        raise UsageError.of("VI701", f"the input {name!r} is one {spec.kind}; {len(read)} files are given")
-    return read[0]
+        return _scalar(name, spec.kind, source.text)
+    note = partial(say, name) if say else silent
+    read = [io.read(path, spec.kind, gamma=source.gamma, note=note) for path in source.paths]
+    return tuple(read) if spec.many else _one(name, spec.kind, read)
+
+
+def _one(name: str, kind: str, given: Any) -> Any:
+    if len(given) != 1:
+        raise UsageError.of("VI701", f"the input {name!r} is one {kind}; {len(given)} files are given")
+    return given[0]
 
 
 def _light(text: str) -> Light:
@@ -103,15 +155,15 @@ def numbers(text: str, count: int, wanted: str) -> tuple[float, ...]:
     return found
 
 
-def _camera(source: Source, values: Mapping[str, Any]) -> Camera:
+def _camera(name: str, source: Source, values: Mapping[str, Any]) -> Camera | None:
     span = numbers(source.text, 2, "a search range is a,b in pixels") if source.text else None
     if span is not None and span[0] >= span[1]:
         raise UsageError.of("VI701", f"a search range a,b wants a < b; this is {source.text}")
     if source.paths:
-        camera = io.read_camera(source.paths[0])
+        camera = io.read_camera(_one(name, "Camera", source.paths))
         return camera if span is None else camera.model_copy(update={"disparity_range": span})
     sizes = [value.shape[:2] for value in values.values() if hasattr(value, "shape")]
-    if not sizes:
-        raise UsageError.of("VI701", "a search range without a calibration needs an image")
+    if not sizes:  # what is wrong with the images is said beside this
+        return None
     rows, columns = sizes[0]
     return Camera.uncalibrated(columns, rows, (span[0], span[1]) if span else None)
