@@ -2,25 +2,74 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from visint.errors import InputError
+from visint.errors import InputError, Problem
 
 if TYPE_CHECKING:
     from visint.graph import Graph
-    from visint.results import Source
+    from visint.results import Result, Source
 
-__all__ = ["former"]
+__all__ = ["Former", "former"]
 
 
-def former(path: Path) -> tuple[Graph, dict[str, Source], int]:
-    """The graph, the sources of the inputs and the seed of the run recorded in ``path``.
+class Former(NamedTuple):
+    """A former run: its graph, its seed, and what its record tells of its inputs."""
+
+    path: Path
+    graph: Graph
+    seed: int
+    inputs: Mapping[str, Mapping[str, Any]]
+
+    def sources(self, given: Mapping[str, Source]) -> dict[str, Source]:
+        """Where its inputs were read from; what is ``given`` now goes first.
+
+        Raises
+        ------
+        InputError
+            VI304 if an input came from no file and is not given, all of them together.
+        """
+        found: dict[str, Source] = {}
+        problems: list[Problem] = []
+        for name, told in self.inputs.items():
+            try:
+                found[name] = given[name] if name in given else self._former_source(name, told)
+            except InputError as error:
+                problems += error.problems
+        if problems:
+            raise InputError(problems)
+        return found | dict(given)
+
+    def _former_source(self, name: str, told: Mapping[str, Any]) -> Source:
+        from visint.results import Source
+
+        paths, text, gamma = told.get("paths", []), told.get("text", ""), told.get("gamma")
+        if not (_all_texts(paths) and isinstance(text, str) and isinstance(gamma, float | int | None)):
+            raise _no_record(self.path)
+        if not paths and not text:
+            found = f"the input {name!r} of that run did not come from a file"
+            raise InputError.of("VI304", found, where=str(self.path), write=f"--in {name}=PATH")
+        return Source(tuple(paths), text, gamma)
+
+    def changed(self, result: Result, given: Mapping[str, Source]) -> Iterator[str]:
+        """The inputs of ``result`` that are not what they were, though nobody gave other files."""
+        from visint.results.provenance import provenance
+
+        now = provenance(result, {})["inputs"]
+        for name, told in self.inputs.items():
+            if name not in given and name in now and told.get("sha256") != now[name]["sha256"]:
+                yield name
+
+
+def former(path: Path) -> Former:
+    """The run recorded in ``path``.
 
     Raises
     ------
     InputError
-        VI302 if the file is no run record; VI304 if the run's inputs did not come from files.
+        VI302 if the file is no run record.
     GraphError
         If the graph in it is no longer sound here.
     """
@@ -28,26 +77,32 @@ def former(path: Path) -> tuple[Graph, dict[str, Source], int]:
     from visint.graph.bind import bind
     from visint.graph.read import parse_data
     from visint.registry import installed
-
-    record = io.read_json(path)
-    if not isinstance(record, dict) or not {"graph", "inputs", "seed"} <= set(record):
-        raise InputError.of("VI302", "is no run record of visint", where=str(path))
-    source = parse_data(record["graph"], str(path))
-    graph = bind(source.spec, installed(), source.places)
-    sources = {name: _source(name, told, path) for name, told in record["inputs"].items() if _given(told)}
-    return graph, sources, int(record["seed"])
-
-
-def _given(told: dict[str, Any]) -> bool:
     from visint.results.provenance import ABSENT
 
-    return bool(told.get("sha256") != ABSENT)
+    record = io.read_json(path)
+    if not _is_record(record):
+        raise _no_record(path)
+    source = parse_data(record["graph"], str(path))
+    graph = bind(source.spec, installed(), source.places)
+    inputs = {name: told for name, told in record["inputs"].items() if told.get("sha256") != ABSENT}
+    return Former(path, graph, record["seed"], inputs)
 
 
-def _source(name: str, told: dict[str, Any], path: Path) -> Source:
-    from visint.results import Source
+def _is_record(record: Any) -> bool:
+    return (
+        isinstance(record, dict)
+        and isinstance(record.get("graph"), dict)
+        and isinstance(record.get("seed"), int)
+        and isinstance(record.get("inputs"), dict)
+        and all(isinstance(told, dict) for told in record["inputs"].values())
+    )
 
-    if "paths" not in told and "text" not in told:
-        found = f"the input {name!r} of that run did not come from a file"
-        raise InputError.of("VI304", found, where=str(path), write=f"--in {name}=PATH")
-    return Source(tuple(told.get("paths", ())), told.get("text", ""), told.get("gamma"))
+
+def _all_texts(paths: Any) -> bool:
+    return isinstance(paths, list) and all(isinstance(path, str) for path in paths)
+
+
+def _no_record(path: Path) -> InputError:
+    error = InputError.of("VI302", "is no run record of visint", where=str(path))
+    assert isinstance(error, InputError)
+    return error

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import json
+import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from visint.errors import UsageError
+from visint.cli.given import Given, settings
+from visint.cli.interrupt import interruptible, undoable
+from visint.cli.progress import progress
+from visint.errors import OutputError, UsageError
 
 if TYPE_CHECKING:
+    from visint.engine import Options
     from visint.graph import Graph
     from visint.results import Result, Source
 
@@ -40,7 +46,7 @@ def command(  # noqa: PLR0913, PLR0917 - the options of a command line are many,
     control: Annotated[str, typer.Option(help="One of the graph's controls.")] = "",
     stop_after: Annotated[str, typer.Option(help="The node to stop after.")] = "",
     start: Annotated[str, typer.Option("--from", help="A former run whose map to start from.")] = "",
-    seed: Annotated[int, typer.Option(help="Seed of random numbers.")] = 0,
+    seed: Annotated[int | None, typer.Option(help="Seed of random numbers.  [default: 0]")] = None,
     threads: Annotated[int, typer.Option(min=1, help="Nodes that may run side by side.")] = 1,
     trace: Annotated[str, typer.Option(help="A file for the timeline, in Chrome's trace format.")] = "",
     force: Annotated[bool, typer.Option("--force", help="Take a folder that holds other things.")] = False,
@@ -51,70 +57,64 @@ def command(  # noqa: PLR0913, PLR0917 - the options of a command line are many,
     """Run a graph on files; depth, normals, report and record go into a folder."""
     from visint import io
     from visint.cli.again import former
+    from visint.cli.remarks import remarks
     from visint.engine import Options
+    from visint.engine.profile import Profile
     from visint.graph import alter, load
 
-    given = _sources(locals())
-    if Path(graph).name == "run.json":
-        bound, sources, seed = former(Path(graph))
-        sources |= given
-    else:
-        bound, sources = load(graph), given
-    bound = alter(bound, settings=_settings(set_), without=without or (), control=control or None)
-    io.OutputFolder(out, force=force)  # refused now rather than after the work
-    options = Options(seed=seed, threads=threads, stop_after=stop_after or None, start=_start(start))
-    result = _run(bound, sources, options, quiet=quiet, trace=trace)
-    files = result.save(out, force=force, sources=sources)
+    typed = Given(left, right, calib, light, light_at, disparity_range, tuple(in_ or ()), gamma)
+    before = former(Path(graph)) if Path(graph).name == "run.json" else None
+    bound = before.graph if before else load(graph)
+    bound = alter(bound, settings=settings(set_ or []), without=without or (), control=control or None)
+    given = typed.sources(bound)
+    sources = before.sources(given) if before else given
+    _refuse_now(out, trace, force=force)
+    profile = Profile()
+    options = Options(
+        seed=seed if seed is not None else before.seed if before else 0,
+        threads=threads,
+        stop_after=stop_after or None,
+        start=_start(bound, start),
+        observers=(profile,) if trace else (),
+    )
+    said: list[tuple[str, str]] = []
+    result = _run(bound, sources, options, said, quiet=quiet)
+    result.warnings[:0] = remarks(result, said, before.changed(result, given) if before else ())
+    with undoable():
+        files = result.save(out, force=force, sources=sources)
+        if trace:
+            io.write_text(trace, json.dumps(profile.chrome()))
     _tell(result, out, files, as_json=as_json, quiet=quiet, verbose=verbose)
 
 
-def _sources(given: dict[str, Any]) -> dict[str, Source]:
-    from visint.results import Source
+def _refuse_now(out: Path, trace: str, *, force: bool) -> None:
+    """What cannot be written is refused before the work, not after it."""
+    from visint import io
 
-    gamma = given["gamma"]
-    sources: dict[str, Source] = {}
-    for name in ("left", "right"):
-        if given[name]:
-            sources[name] = Source((_absolute(given[name]),), gamma=gamma)
-    if given["calib"] or given["disparity_range"]:
-        paths = (_absolute(given["calib"]),) if given["calib"] else ()
-        sources["camera"] = Source(paths, given["disparity_range"])
-    if given["light"] and given["light_at"]:
-        raise UsageError.of("VI701", "--light and --light-at exclude each other")
-    if given["light"] or given["light_at"]:
-        sources["light"] = Source((), given["light"] or f"at {given['light_at']}")
-    for pair in given["in_"] or ():
-        name, path = _pair(pair, "--in NAME=PATH")
-        before = sources.get(name, Source())
-        sources[name] = Source((*before.paths, _absolute(path)), gamma=gamma)
-    return sources
+    io.OutputFolder(out, force=force)
+    place = out.absolute()
+    _writable(next(folder for folder in (place, *place.parents) if folder.exists()))
+    home = Path(trace).absolute().parent
+    if trace and home != place:
+        _writable(home)
 
 
-def _absolute(path: str) -> str:
-    return str(Path(path).absolute())
+def _writable(folder: Path) -> None:
+    if not folder.is_dir():
+        raise OutputError.of("VI601", "does not exist; create it first", where=str(folder))
+    if not os.access(folder, os.W_OK | os.X_OK):
+        found = "cannot be written to; wants a folder that you may write to"
+        raise OutputError.of("VI601", found, where=str(folder))
 
 
-def _pair(text: str, wanted: str) -> tuple[str, str]:
-    name, equals, value = text.partition("=")
-    if not (name and equals):
-        raise UsageError.of("VI701", f"{text!r} is not of the form {wanted}")
-    return name, value
-
-
-def _settings(given: list[str] | None) -> dict[str, Any]:
-    """``node.param=value``; values are read as in a graph file."""
-    from visint.graph.read import parse_value
-
-    pairs = (_pair(text, "--set NODE.PARAM=VALUE") for text in given or ())
-    return {key: parse_value(value) for key, value in pairs}
-
-
-def _start(folder: str) -> dict[str, Any]:
+def _start(graph: Graph, folder: str) -> dict[str, Any]:
     """The fields of the map that a former run left: depth, and boundaries if it has them."""
     from visint import io
 
     if not folder:
         return {}
+    if graph.spec.hub is None:
+        raise UsageError.of("VI701", f"--from starts a map, and the graph {graph.name!r} has no hub")
     place = Path(folder)
     fields = {"depth": ("depth.pfm", "Depth"), "boundaries": ("boundaries.png", "Boundaries")}
     return {
@@ -124,25 +124,23 @@ def _start(folder: str) -> dict[str, Any]:
     }
 
 
-def _run(graph: Graph, sources: dict[str, Source], options: Any, *, quiet: bool, trace: str) -> Result:
+def _run(
+    graph: Graph,
+    sources: Mapping[str, Source],
+    options: Options,
+    said: list[tuple[str, str]],
+    *,
+    quiet: bool,
+) -> Result:
     from dataclasses import replace
 
     import visint
-    from visint import io
-    from visint.cli.interrupt import interruptible
-    from visint.cli.progress import progress
-    from visint.engine.profile import Profile
     from visint.engine.sources import read_sources
 
-    profile = Profile()
     with interruptible() as cancel, progress(quiet=quiet) as shown:
-        observers = [*([shown] if shown else []), *([profile] if trace else [])]
-        values = read_sources(graph, sources)
-        options = replace(options, observers=tuple(observers), cancel=cancel)
-        result = visint.run(graph, values, options=options)
-    if trace:
-        io.write_text(trace, json.dumps(profile.chrome()))
-    return result
+        values = read_sources(graph, sources, lambda name, sentence: said.append((name, sentence)))
+        observers = (*options.observers, *([shown] if shown else []))
+        return visint.run(graph, values, options=replace(options, observers=observers, cancel=cancel))
 
 
 def _tell(
