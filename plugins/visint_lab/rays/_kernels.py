@@ -227,47 +227,77 @@ def meet_heights(things, i, heights, ox, oy, oz, dx, dy, dz, near):
 
 
 @njit(error_model="numpy")
-def meet_mesh(root, bounds, links, triangles, ox, oy, oz, dx, dy, dz, near, far):
-    """Nearest triangle (Möller and Trumbore) in a tree of boxes; the face is the triangle's index."""
+def _entry(bounds, node, ox, oy, oz, ix, iy, iz, near, far):
+    """Where a ray of inverse direction (ix, iy, iz) enters a node's box, FAR if not between near and far."""
+    x0, x1 = (bounds[node, 0] - ox) * ix, (bounds[node, 3] - ox) * ix
+    y0, y1 = (bounds[node, 1] - oy) * iy, (bounds[node, 4] - oy) * iy
+    z0, z1 = (bounds[node, 2] - oz) * iz, (bounds[node, 5] - oz) * iz
+    enter = max(min(x0, x1), min(y0, y1), min(z0, z1))
+    leave = min(max(x0, x1), max(y0, y1), max(z0, z1))
+    return FAR if enter > leave or leave < near or enter > far else enter
+
+
+@njit(error_model="numpy")
+def _in_leaf(triangles, first, last, ox, oy, oz, dx, dy, dz, near, best):
+    """Nearest of a few triangles (Möller and Trumbore 1997, doi:10.1080/10867651.1997.10487468)."""
+    face = -1
+    for k in range(first, last):
+        e1x, e1y, e1z = triangles[k, 3], triangles[k, 4], triangles[k, 5]
+        e2x, e2y, e2z = triangles[k, 6], triangles[k, 7], triangles[k, 8]
+        hx, hy, hz = dy * e2z - dz * e2y, dz * e2x - dx * e2z, dx * e2y - dy * e2x
+        det = e1x * hx + e1y * hy + e1z * hz
+        if det == 0.0:
+            continue
+        scale = 1.0 / det
+        sx, sy, sz = ox - triangles[k, 0], oy - triangles[k, 1], oz - triangles[k, 2]
+        u = (sx * hx + sy * hy + sz * hz) * scale
+        if u < 0.0 or u > 1.0:
+            continue
+        qx, qy, qz = sy * e1z - sz * e1y, sz * e1x - sx * e1z, sx * e1y - sy * e1x
+        w = (dx * qx + dy * qy + dz * qz) * scale
+        t = (e2x * qx + e2y * qy + e2z * qz) * scale
+        if w >= 0.0 and u + w <= 1.0 and near < t < best:
+            best, face = t, k
+    return best, face
+
+
+@njit(error_model="numpy")
+def meet_mesh(root, bounds, links, triangles, ox, oy, oz, dx, dy, dz, near, far, anything):
+    """Nearest triangle in a tree of boxes, nearer boxes first; the face is the triangle's index."""
     best, face = far, -1
-    stack = np.empty(64, np.int64)
-    stack[0] = root
-    top = 1
     ix = 1.0 / dx if dx != 0.0 else FAR
     iy = 1.0 / dy if dy != 0.0 else FAR
     iz = 1.0 / dz if dz != 0.0 else FAR
-    while top > 0:
-        top -= 1
-        node = stack[top]
-        box = bounds[node]
-        x0, x1 = (box[0] - ox) * ix, (box[3] - ox) * ix
-        y0, y1 = (box[1] - oy) * iy, (box[4] - oy) * iy
-        z0, z1 = (box[2] - oz) * iz, (box[5] - oz) * iz
-        enter = max(min(x0, x1), min(y0, y1), min(z0, z1))
-        leave = min(max(x0, x1), max(y0, y1), max(z0, z1))
-        if enter > leave or leave < near or enter > best:
-            continue
+    if _entry(bounds, root, ox, oy, oz, ix, iy, iz, near, far) == FAR:
+        return FAR, 0
+    stack = np.empty(64, np.int64)
+    top, node = 0, root
+    while True:
         first, second = links[node, 0], links[node, 1]
         if second > 0:
-            stack[top], stack[top + 1] = first, second
-            top += 2
-            continue
-        for k in range(first, first - second):
-            v = triangles[k]
-            e1x, e1y, e1z, e2x, e2y, e2z = v[3], v[4], v[5], v[6], v[7], v[8]
-            hx, hy, hz = dy * e2z - dz * e2y, dz * e2x - dx * e2z, dx * e2y - dy * e2x
-            det = e1x * hx + e1y * hy + e1z * hz
-            if det == 0.0:
+            here = _entry(bounds, first, ox, oy, oz, ix, iy, iz, near, best)
+            there = _entry(bounds, second, ox, oy, oz, ix, iy, iz, near, best)
+            if there < here:
+                first, second, here, there = second, first, there, here
+            if there < FAR:
+                stack[top] = second
+                top += 1
+            if here < FAR:
+                node = first
                 continue
-            sx, sy, sz = ox - v[0], oy - v[1], oz - v[2]
-            u = (sx * hx + sy * hy + sz * hz) / det
-            if u < 0.0 or u > 1.0:
-                continue
-            qx, qy, qz = sy * e1z - sz * e1y, sz * e1x - sx * e1z, sx * e1y - sy * e1x
-            w = (dx * qx + dy * qy + dz * qz) / det
-            t = (e2x * qx + e2y * qy + e2z * qz) / det
-            if w >= 0.0 and u + w <= 1.0 and near < t < best:
-                best, face = t, k
+        else:
+            best, found = _in_leaf(triangles, first, first - second, ox, oy, oz, dx, dy, dz, near, best)
+            if found >= 0:
+                face = found
+                if anything:
+                    break
+        while top > 0:  # boxes behind what was found meanwhile need no look
+            top -= 1
+            node = stack[top]
+            if _entry(bounds, node, ox, oy, oz, ix, iy, iz, near, best) < FAR:
+                break
+        else:
+            break
     return (best if face >= 0 else FAR), face
 
 
