@@ -18,7 +18,9 @@ about: Two loops, one in the other, and a value that goes round.
 inputs: {left: Image, right: Image, light: Light?}
 loops:
   levels: {over: pyramid, coarsest: 8, between: {Disparity: replicate}}
-  sweeps: {inside: levels, times: 20, until: {change_of: couple.depth, below: 1.0e-3, patience: 2}, on_exhausted: warn}
+  sweeps:
+    {inside: levels, times: 20, until: {change_of: couple.depth, below: 1.0e-3, patience: 2},
+     on_exhausted: warn}
 nodes:
   attributes: {uses: stereo.attributes, in: {left: inputs.left, right: inputs.right}}
   barriers: {uses: grouping.edges_of, loop: levels, in: {image: inputs.left}}
@@ -26,7 +28,9 @@ nodes:
     uses: stereo.weng
     loop: sweeps
     in: {attributes: attributes.images, boundaries: barriers.boundaries}
-    feedback: {disparity: {from: back.disparity, start: plane}, right: {from: match.right, start: barriers.first}}
+    feedback:
+      disparity: {from: back.disparity, start: plane}
+      right: {from: match.right, start: barriers.first}
   couple: {uses: bayes.pairwise, loop: sweeps, levels: [0, 1, 2], in: {depth: match.left}}
   back: {uses: stereo.disparity, loop: sweeps, in: {depth: couple.depth}}
 outputs: {depth: couple.depth}
@@ -76,9 +80,12 @@ def spec(text: str) -> GraphSpec:
 
 
 def chain(count: int) -> str:
-    nodes = "\n".join(f"  n{i}: {{uses: toy.add, in: {{a: n{i - 1}.sum, b: inputs.x}}}}" for i in range(1, count))
+    nodes = "\n".join(
+        f"  n{i}: {{uses: toy.add, in: {{a: n{i - 1}.sum, b: inputs.x}}}}" for i in range(1, count)
+    )
     first = "  n0: {uses: toy.add, in: {a: inputs.x}}"
-    return f"visint: 1\nname: chain\ninputs: {{x: Number}}\nnodes:\n{first}\n{nodes}\noutputs: {{y: n{count - 1}.sum}}\n"
+    head = "visint: 1\nname: chain\ninputs: {x: Number}\nnodes:\n"
+    return f"{head}{first}\n{nodes}\noutputs: {{y: n{count - 1}.sum}}\n"
 
 
 def fan(count: int) -> str:

@@ -35,14 +35,15 @@ def compose(spec: GraphSpec, failed: str = "") -> Drawing:
 def _group(spec: GraphSpec, edges: tuple[Edge, ...], name: str | None) -> Group:
     hub = spec.hub
     inner = [loop for loop in spec.loops if _parent(spec, loop) == name]
-    boxes = [*_nodes(spec, name)] if name else [*_ends(spec, edges), *_nodes(spec, name)]
+    boxes = [*(_ends(spec, edges) if name is None else ()), *_nodes(spec, name)]
     here = hub is not None and _known(spec, hub.loop) == name
     return Group(
         name or "",
-        captions.loop_caption(spec.loops[name]) if name else (),
+        captions.loop_caption(spec.loops[name]) if name is not None else (),
         _wired(boxes, edges),
         tuple(_group(spec, edges, loop) for loop in inner),
         _hub(hub, edges) if here and hub is not None else None,
+        framed=name is not None,
     )
 
 

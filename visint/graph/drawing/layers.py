@@ -35,7 +35,7 @@ def group_block(group: Group, edges: Sequence[Edge]) -> Block:
     sort_ports(floor, found, group.boxes, edges)
     place(found)
     lanes = lanes_of(floor, found)
-    _set_rows(floor, found, lanes, caption_size(group)[1] if group.name else 0.0)
+    _set_rows(floor, found, lanes, caption_size(group)[1] if group.framed else 0.0)
     return _framed(group, floor, found, _assembled(floor, found, lanes), lanes.right)
 
 
@@ -90,11 +90,11 @@ def _framed(group: Group, floor: Floor, found: Lattice, inner: Block, reach: flo
     """``inner`` with margins and, for a loop, its frame and a caption that no edge crosses."""
     right = max([cell.x + cell.w for row in found.rows for cell in row] + [reach])
     left, caption = 0.0, 0.0
-    if group.name:
+    if group.framed:
         doors = sorted(cell.x for cell in found.rows[0])
         left, right, caption = caption_spot(group, doors, -PAD, right + PAD)
     block = Block(right - left, floor.bottoms[-1], inner.keys)
-    if group.name:
+    if group.framed:
         block.frames.append(Frame(group, Rect(0, 0, block.w, block.h), caption - left))
     block.take(inner, Point(-left, 0))
     _set_doors(block, floor, found, -left)

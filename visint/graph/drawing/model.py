@@ -50,13 +50,14 @@ class Hub:
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """A loop with what lies in it; the graph itself is the outermost group, without a name."""
+    """A loop with what lies in it; the graph itself is the outermost group, which has no frame."""
 
     name: str = ""
     caption: tuple[str, ...] = ()
     boxes: tuple[Box, ...] = ()
     groups: tuple[Group, ...] = ()
     hub: Hub | None = None
+    framed: bool = True
 
     def own(self) -> Iterator[Box]:
         """The boxes directly in it, the hub's included."""

@@ -17,7 +17,7 @@ font-family:"Helvetica Neue",Helvetica,Arial,"Liberation Sans",sans-serif;line-h
 h1{font-size:1.5rem;margin:0}
 p{margin:.25rem 0 1rem;max-width:44rem;color:#5b6875}
 figure{margin:1rem 0;overflow-x:auto}
-figure svg{display:block;max-width:100%;height:auto;min-width:min(100%,40rem)}
+figure svg{display:block;max-width:100%;height:auto}
 figcaption{font-size:.85rem;color:#5b6875;margin-top:.75rem}
 @media (prefers-color-scheme:dark){body{background:#12171c;color:#e6ebf0}p,figcaption{color:#a3b0bc}}
 """

@@ -37,25 +37,22 @@ def _leads(after: Mapping[int, Sequence[int]], start: int, goal: int) -> bool:
 
 def ranks(count: int, pairs: Sequence[Pair], first: Sequence[int], last: Sequence[int]) -> list[int]:
     """The row of each of ``count`` blocks; ``first`` stand above, ``last`` below all others."""
-    rank = _longest(count, pairs)
-    if first:
-        rank = [one if index in first else max(one, 1) for index, one in enumerate(rank)]
+    rank = [0 if index in first or not first else 1 for index in range(count)]
+    _lengthen(rank, pairs)
     deepest = max((rank[i] for i in range(count) if i not in last), default=-1)
     for index in last:
         rank[index] = deepest + 1
     return _split(rank)
 
 
-def _longest(count: int, pairs: Sequence[Pair]) -> list[int]:
-    rank = [0] * count
-    for _ in range(count):
+def _lengthen(rank: list[int], pairs: Sequence[Pair]) -> None:
+    """Moves each block below all that lead to it; ``pairs`` close no circle, so this ends."""
+    changed = True
+    while changed:
         changed = False
         for source, target in pairs:
             if rank[target] <= rank[source]:
                 rank[target], changed = rank[source] + 1, True
-        if not changed:
-            break
-    return rank
 
 
 def _split(rank: Sequence[int]) -> list[int]:
