@@ -8,7 +8,7 @@ from pydantic import Field
 from visint.arrays import Array, Features, Image
 from visint.module import Context, Module, Params, Ports
 from visint_stereo.descent.attribute_images import GRADES, attributes
-from visint_stereo.descent.noise import noise_of
+from visint_stereo.noise import noise_of
 
 __all__ = ["Attributes"]
 

@@ -9,15 +9,20 @@ from visint.arrays import Array, Image, Mask
 from visint.fields import Camera, DisparityEvidence
 from visint.module import Context, Module, Params, Ports
 from visint_stereo.semiglobal.brightness import graded
+from visint_stereo.semiglobal.calming import calmed
 from visint_stereo.semiglobal.consistency import agreed, occluded, without_speckles
 from visint_stereo.semiglobal.fill import from_behind
 from visint_stereo.semiglobal.refine import refined
-from visint_stereo.semiglobal.reliability import contrast, reliability
+from visint_stereo.semiglobal.reliability import TrainedOn, contrast, reliability, signs
 from visint_stereo.semiglobal.search_range import estimated, within
 from visint_stereo.semiglobal.volume import Levels, Penalties, Volume, census, matching_costs, path_costs
 from visint_stereo.semiglobal.winner import winners
 
 __all__ = ["SemiGlobal"]
+
+
+FILLED = 4.0
+"""Sigma of a disparity filled from its neighbours, px."""
 
 
 class SemiGlobalParams(Params):
@@ -37,6 +42,8 @@ class SemiGlobalParams(Params):
         How far, in pixels of the level, the two views may disagree.
     speckle
         Islands of up to this many full-size pixels are not believed.
+    trained_on
+        Pairs the reliability was fitted on: ``all``, or half of them, to measure it fairly on the other half.
     """
 
     min_disparity: float | None = None
@@ -47,6 +54,7 @@ class SemiGlobalParams(Params):
     outside: int = Field(default=18, ge=0, le=62)
     tolerance: float = Field(default=1.0, gt=0)
     speckle: int = Field(default=100, ge=0)
+    trained_on: TrainedOn = "all"
 
     def penalties(self) -> Penalties:
         """The penalties as the volume wants them."""
@@ -89,7 +97,9 @@ class SemiGlobal(Module[SemiGlobalParams, SemiGlobalInputs, SemiGlobalOutputs]):
 
     def run(self, inputs: SemiGlobalInputs, ctx: Context) -> SemiGlobalOutputs:
         """Match the pair; arrays of the images' size, in pixels of the level."""
-        left, right = graded(inputs.left), graded(inputs.right)
+        here, there, blur = calmed(inputs.left, inputs.right)
+        ctx.measure("blur", blur)
+        left, right = graded(here), graded(there)
         levels = self._levels(inputs.camera, left, right, ctx)
         ctx.measure("first disparity", levels.first)
         ctx.measure("last disparity", levels.last)
@@ -98,12 +108,12 @@ class SemiGlobal(Module[SemiGlobalParams, SemiGlobalInputs, SemiGlobalOutputs]):
         seen = np.isfinite(inputs.left) & (contrast(left) > 0)
         trusted = seen & agreed(won.disparity, won.right, self.params.tolerance)
         trusted = without_speckles(won.disparity, trusted, self.params.speckle // ctx.scale**2)
-        views = [view.astype(np.float32) / 16 for view in (left, right)]
-        fine, sigma = refined(won.disparity, trusted, *views)
+        views = (left.astype(np.float32) / 16, right.astype(np.float32) / 16)
+        fine, sigma = refined(won.disparity, trusted, views, levels)
         disparity = from_behind(fine, trusted)
-        trust = np.where(seen, reliability(left, won, trusted, disparity), 0)
+        trust = reliability(signs(left, won, trusted, np.nan_to_num(disparity)), self.params.trained_on)
         return SemiGlobalOutputs(
-            disparity=DisparityEvidence.of(disparity, np.where(trusted, sigma, 4.0), trust),
+            disparity=DisparityEvidence.of(disparity, np.where(trusted, sigma, FILLED), seen * trust),
             consistent=trusted,
             occluded=occluded(won.disparity, won.right, trusted),
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from visint.arrays import Array
+from visint_stereo.semiglobal.volume import Levels
 
 __all__ = ["refined"]
 
@@ -15,11 +16,15 @@ SURROUND = 25
 """Window of the mean brightness difference that is taken out first: views differ in exposure."""
 STEP = 0.3
 """Standard deviation of the fit between levels, px: what brightness has to beat."""
+AT_ENDS = 1.2
+"""The same at the ends of the search range, where nothing was fitted."""
 REACH = 1.0
 """A correction beyond this many px is a mismatch, not a correction."""
 
 
-def refined(disparity: Array, trusted: Array, left: Array, right: Array) -> tuple[Array, Array]:
+def refined(
+    disparity: Array, trusted: Array, views: tuple[Array, Array], levels: Levels
+) -> tuple[Array, Array]:
     """(disparity, sigma), float32 (H, W): ``disparity`` corrected by the brightness of both views.
 
     Gauss-Newton steps, shared by the trusted pixels of a small window and held back by the fit between
@@ -31,11 +36,16 @@ def refined(disparity: Array, trusted: Array, left: Array, right: Array) -> tupl
     ----------
     disparity
         Start, px; trusted pixels only are corrected.
-    left, right
-        Graded brightness, float32 (H, W).
+    views
+        Graded brightness of the left and right view, float32 (H, W).
+    levels
+        The disparities searched: at either end there was no fit between levels to hold on to.
     """
     from visint_stereo.semiglobal import _kernels
 
+    left, right = views
+    ends = (disparity <= levels.first) | (disparity >= levels.last)
+    firm = np.where(ends, AT_ENDS, STEP).astype(np.float32) ** -2
     weight = trusted.astype(np.float32)
     share = np.maximum(_mean(weight, WINDOW), 1e-3)
     around = np.maximum(_mean(weight, SURROUND), 1e-3)
@@ -49,7 +59,7 @@ def refined(disparity: Array, trusted: Array, left: Array, right: Array) -> tupl
         slope = (steps + slopes) / 2
         precision = _mean(weight * slope**2, WINDOW)
         noise = _mean(weight * residual**2, WINDOW) / share + np.float32(0.01)
-        hold = noise / np.float32(STEP**2)
+        hold = noise * firm
         pull = _mean(weight * slope * (slope * current - residual), WINDOW)
         proposed = (pull + hold * disparity) / (precision + hold)
         near = trusted & (np.abs(proposed - disparity) <= REACH)

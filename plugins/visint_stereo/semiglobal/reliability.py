@@ -1,19 +1,30 @@
-"""How likely a disparity is right: a logistic model of nine signs, and the precision of those that are."""
+"""How likely a disparity is right: a logistic model of nine signs."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Literal
 
 import numpy as np
 
 from visint.arrays import Array
 from visint_stereo.semiglobal.winner import Winners
 
-__all__ = ["SIGNS", "contrast", "reliability", "signs"]
+__all__ = ["SIGNS", "TrainedOn", "contrast", "reliability", "signs"]
 
 SIGNS = ("margin", "least", "crowd", "agree 7", "agree 7²", "agree 21", "texture", "apart", "border")
 """The signs, in the order of the weights."""
 
-WEIGHTS = np.array([-0.97, -0.88, -0.08, 6.54, -5.53, -3.15, 0.75, 0.40, 0.70], dtype=np.float32)
-BIAS = np.float32(-0.45)
+TrainedOn = Literal["all", "A", "B"]
+WEIGHTS: Mapping[TrainedOn, tuple[float, ...]] = {
+    "all": (0.783, 0.761, -0.171, -2.390, 1.456, 4.891, -0.304, -0.169, -1.925),
+    "A": (0.773, 0.640, -0.278, -2.974, 2.177, 4.669, -0.339, -0.164, -1.855),
+    "B": (0.791, 0.874, -0.074, -1.891, 0.868, 5.049, -0.252, -0.176, -1.991),
+}
+BIAS: Mapping[TrainedOn, float] = {"all": -0.233, "A": 0.080, "B": -0.507}
+"""Of a right disparity, fitted by logistic regression on public pairs (all, or one of two halves, so that the
+other can be reported on) and, at a third of their weight, on rendered scenes with and without noise and on
+pairs of unrelated images, where everything is wrong. Signs overlap: a single weight means little."""
 
 
 def _mean(values: Array, size: int) -> Array:
@@ -57,7 +68,7 @@ def signs(grades: Array, won: Winners, trusted: Array, disparity: Array) -> Arra
     ).astype(np.float32)
 
 
-def reliability(grades: Array, won: Winners, trusted: Array, disparity: Array) -> Array:
-    """float32 (H, W) in [0, 1): the chance that ``disparity`` is right to 2 px; NaN counts as 0."""
-    odds = np.tensordot(WEIGHTS, signs(grades, won, trusted, np.nan_to_num(disparity)), axes=1) + BIAS
-    return np.asarray(np.where(np.isfinite(disparity), 1 / (1 + np.exp(odds)), 0), dtype=np.float32)
+def reliability(of: Array, trained_on: TrainedOn = "all") -> Array:
+    """float32 (H, W) in (0, 1): the chance that a disparity with these signs ``of`` it is right to 2 px."""
+    odds = np.tensordot(np.asarray(WEIGHTS[trained_on], np.float32), of, axes=1) + BIAS[trained_on]
+    return np.asarray(1 / (1 + np.exp(-odds)), dtype=np.float32)

@@ -18,13 +18,10 @@ COARSE_COLUMNS = 180
 
 
 def within(low: float, high: float, columns: int) -> Levels:
-    """The whole levels from ``low`` to ``high`` px, cut to what an image of ``columns`` can show.
-
-    One level more at either end, where there is room: the fit between levels wants both neighbours.
-    """
+    """The whole levels from ``low`` to ``high`` px, cut to what an image of ``columns`` can show."""
     limit = columns - 1
-    first = min(max(math.floor(min(low, high)) - 1, -limit), limit)
-    last = max(min(math.ceil(max(low, high)) + 1, limit), first)
+    first = min(max(math.floor(min(low, high)), -limit), limit)
+    last = max(min(math.ceil(max(low, high)), limit), first)
     return Levels(first, last - first + 1)
 
 

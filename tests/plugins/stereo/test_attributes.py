@@ -8,7 +8,7 @@ import pytest
 from visint.module import Context
 from visint_stereo.attributes import Attributes, AttributesInputs, AttributesParams
 from visint_stereo.descent.attribute_images import attributes
-from visint_stereo.descent.noise import noise_of
+from visint_stereo.noise import noise_of
 
 
 def run(views, **params):

@@ -38,7 +38,7 @@ def test_the_range_comes_from_the_camera_and_parameters_override_it(shifted):
     left, right = shifted(23.4)
     camera = Camera.uncalibrated(160, 96, (0, 8))
     inside = np.s_[8:-8, 40:-8]
-    assert np.nanmax(match(left, right, camera).disparity.value) < 11
+    assert np.nanmax(match(left, right, camera).disparity.value) < 10
     wide = match(left, right, camera, max_disparity=30).disparity.value[inside]
     assert np.abs(wide - 23.4).max() < 0.15
 
@@ -63,7 +63,7 @@ def test_a_constant_pair_says_nothing(level):
 def test_noise_is_not_believed():
     """Two unrelated noise images agree on next to nothing."""
     left, right = np.random.default_rng(3).random((2, 80, 120), dtype=np.float32)
-    assert match(left, right).disparity.reliability.mean() < 0.15
+    assert match(left, right).disparity.reliability.mean() < 0.25
 
 
 @pytest.mark.parametrize("shape", [(1, 60), (60, 1), (2, 2), (1, 1)])
@@ -90,10 +90,11 @@ def test_all_unknown_passes():
 
 
 def test_the_left_border_survives(shifted):
-    """Pixels whose match lies outside the right image are filled, not dropped, and rarely believed."""
+    """Pixels whose match lies outside the right image are filled, not dropped, and believed less."""
     found = match(*shifted(23.4), min_disparity=0, max_disparity=32)
     assert np.isfinite(found.disparity.value[8:-8, :20]).all()
-    assert found.disparity.reliability[8:-8, :14].mean() < 0.4
+    trust = found.disparity.reliability[8:-8]
+    assert trust[:, :14].mean() < 0.8 * trust[:, 40:].mean()
     assert np.abs(found.disparity.value[8:-8, :20] - 23.4).max() < 1
 
 
@@ -118,14 +119,14 @@ def _opencv(pair):
 def test_a_real_pair_is_matched_no_worse_than_opencv_does(real_pair, filled, bad, scene):
     """Share of pixels off by more than 2 px, both with holes filled by the smaller row neighbour."""
     pair = real_pair(scene)
-    ours = match(pair.left, pair.right, min_disparity=0, max_disparity=pair.levels - 2).disparity
+    ours = match(pair.left, pair.right, min_disparity=0, max_disparity=pair.levels - 1).disparity
     assert bad(filled(ours.value), pair.truth) <= bad(filled(_opencv(pair)), pair.truth)
 
 
 def test_reliability_tells_right_from_wrong_on_a_real_pair(real_pair):
     """The better half is wrong at least five times less often than the whole."""
     pair = real_pair("mb2014q/Piano")
-    found = match(pair.left, pair.right, min_disparity=0, max_disparity=pair.levels - 2).disparity
+    found = match(pair.left, pair.right, min_disparity=0, max_disparity=pair.levels - 1).disparity
     known = np.isfinite(pair.truth)
     wrong = ~(np.abs(found.value - pair.truth) <= 2)[known]
     trust = found.reliability[known]
