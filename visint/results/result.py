@@ -19,6 +19,14 @@ from visint.results.records import Measure, Record, Stop, Turn, Warned
 
 __all__ = ["Result", "gather"]
 
+_RELATIVE = Warned(
+    "camera",
+    0,
+    0,
+    "relative_depth",
+    "without a calibration depth is relative: known up to scale, and a stretch along the line of sight",
+)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Result(Mapping[str, Any]):
@@ -157,6 +165,8 @@ def gather(  # noqa: PLR0913 - all that a run leaves, put together in this one p
     confidence |= {name: confidence[origin] for name, origin in origins.items() if origin in confidence}
     values = {name: _plain(value) for name, (_, value) in typed.items()}
     kinds = {name: kind for name, (kind, _) in typed.items()}
+    if "Depth" in kinds.values() and (maps if camera is None else not camera.calibrated):
+        record.warnings.append(_RELATIVE)
     return Result(graph, dict(inputs), values, kinds, confidence, evidence, writers, record, seed, seconds)
 
 
