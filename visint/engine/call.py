@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from time import perf_counter
 from typing import Any
 
@@ -13,7 +14,7 @@ from visint import io
 from visint.arrays import read_only
 from visint.engine.commit import map_call
 from visint.engine.frame import Frame
-from visint.engine.invoke import invoke_module
+from visint.engine.invoke import Invoke, Values, invoke_module
 from visint.engine.state import State
 from visint.errors import Cancelled, ModuleError, Problem, VisintError, Where
 from visint.events import NodeFailed, NodeFinished, NodeStarted
@@ -24,9 +25,7 @@ from visint.schedule.order import per_turn
 
 __all__ = ["Call"]
 
-Values = dict[str, Any]
-Invoke = Callable[[Values, Context], Any]
-SubGraph = Callable[[Node, Values, State], Mapping[str, Any]]
+SubGraph = Callable[[Node], Invoke]
 
 
 def _value(evidence: Any) -> Any:
@@ -50,25 +49,22 @@ def read_as(value: Any, reader: Reader) -> Any:
 
 
 class Call:
-    """A step made ready to run: everything that does not change from call to call is worked out once."""
+    """A step made ready to run, in any number of runs: everything that does not change is worked out once."""
 
     __slots__ = (
-        "_cancelled",
         "_defaults",
-        "_frame",
         "_invoke",
+        "_key",
         "_levels",
         "_lists",
         "_never_none",
-        "_note",
         "_outs",
         "_per_turn",
-        "_seed",
         "_singles",
         "node",
     )
 
-    def __init__(self, step: Step, seed: int, sub_graph: SubGraph, state: State) -> None:
+    def __init__(self, step: Step, sub_graph: SubGraph) -> None:
         self.node = step.node
         self._singles = tuple((port, slot) for port, slot in step.ins if isinstance(slot, int))
         self._lists = tuple((port, slot) for port, slot in step.ins if not isinstance(slot, int))
@@ -77,12 +73,9 @@ class Call:
         self._outs = step.outs
         self._levels = None if step.node.levels is None else frozenset(step.node.levels)
         self._per_turn = step.node.callee.module is None or per_turn(step.node)
-        self._seed = (seed, step.key)
+        self._key = step.key
         self._defaults = _defaults(step.node)
-        self._invoke = _by_level(step.node, sub_graph, state)
-        self._frame = Frame()
-        self._cancelled = state.cancel.is_set
-        self._note = lambda what, name, value: state.note(self.node.name, self._frame, what, name, value)
+        self._invoke = _by_level(step.node, sub_graph)
 
     def __call__(self, state: State, frame: Frame) -> None:
         """Runs the node once.
@@ -101,6 +94,12 @@ class Call:
             return
         if state.cancel.is_set():
             state.check()
+        outputs = self._timed(state, frame, self._fed(slots))
+        for slot, port, reader in self._outs:
+            value = outputs[port]
+            slots[slot] = value if reader == "plain" else read_as(value, reader)
+
+    def _fed(self, slots: list[Any]) -> Values:
         values = self._defaults.copy()
         for port, source in self._singles:
             values[port] = slots[source]
@@ -109,10 +108,7 @@ class Call:
                 values[port] = ()  # a list that a node limited to some levels gives is empty elsewhere
         for port, sources in self._lists:
             values[port] = tuple([one for slot in sources if (one := slots[slot]) is not None])
-        outputs = self._timed(state, frame, values)
-        for slot, port, reader in self._outs:
-            value = outputs[port]
-            slots[slot] = value if reader == "plain" else read_as(value, reader)
+        return values
 
     def _timed(self, state: State, frame: Frame, values: Values) -> Any:
         name, level = self.node.name, frame.level
@@ -121,7 +117,7 @@ class Call:
         if state.emit is not None:
             state.emit(NodeStarted(name, level, turn, started))
         try:
-            outputs = self._invoke(values, self._context(frame))
+            outputs = self._invoke(values, self._context(state, frame), state)
         except BaseException as error:
             failure = self._failure(error, frame)
             state.tell(NodeFailed(name, level, turn, str(failure)))
@@ -134,16 +130,15 @@ class Call:
             state.emit(NodeFinished(name, level, turn, started, seconds, outputs))
         return outputs
 
-    def _context(self, frame: Frame) -> Context:
-        self._frame = frame
+    def _context(self, state: State, frame: Frame) -> Context:
         return Context(
             level=frame.level,
             size=frame.size,
             turns=frame.turns,
-            seed=self._seed,
+            seed=(state.seed, self._key),
             per_turn=self._per_turn,
-            note=self._note,
-            cancelled=self._cancelled,
+            note=partial(state.note, self.node.name, frame),
+            cancelled=state.cancel.is_set,
         )
 
     def _failure(self, error: BaseException, frame: Frame) -> BaseException:
@@ -188,14 +183,14 @@ def _defaults(node: Node) -> Values:
     }
 
 
-def _by_level(node: Node, sub_graph: SubGraph, state: State) -> Invoke:
+def _by_level(node: Node, sub_graph: SubGraph) -> Invoke:
     if node.callee.graph is not None:
-        return lambda values, context: sub_graph(node, values, state)  # noqa: ARG005 - it has none
+        return sub_graph(node)
     if node.callee.module is None:
-        return map_call(node, state)
+        return map_call(node)
     module = node.callee.module
     usual = invoke_module(module, node.params)
     if not node.at:
         return usual
     at = {level: invoke_module(module, params) for level, params in node.at.items()}
-    return lambda values, context: at.get(context.level, usual)(values, context)
+    return lambda values, context, state: at.get(context.level, usual)(values, context, state)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from visint.arrays import Array, read_only
+from visint.engine.invoke import Invoke
 from visint.engine.state import State
 from visint.errors import ModuleError
 from visint.fields import geometry
@@ -41,12 +42,12 @@ class Fields(Mapping[str, Any]):
         return len(self.snapshot.values)
 
 
-def map_call(node: Node, state: State) -> Callable[[dict[str, Any], Context], Fields]:
+def map_call(node: Node) -> Invoke:
     """What runs at a ``map.begin`` or ``map.commit`` node."""
     if node.callee.id == BEGIN:
-        return lambda values, context: Fields(_begin(node, values, context, state))
+        return lambda values, context, state: Fields(_begin(node, values, context, state))
     writer = node.of or node.name
-    return lambda values, context: Fields(_commit(values, Writer(writer, context.level, context.turn)))
+    return lambda values, context, _: Fields(_commit(values, Writer(writer, context.level, context.turn)))
 
 
 def plane(kind: str, camera: Camera) -> Array:

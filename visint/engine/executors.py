@@ -28,8 +28,8 @@ def in_order(block: Block, items: list[Run]) -> Run:
     return run
 
 
-def side_by_side(block: Block, items: list[Run], pool: ThreadPoolExecutor) -> Run:
-    """The threads executor: an item starts as soon as those it waits for are done.
+def side_by_side(block: Block, items: list[Run], pool: int) -> Run:
+    """The threads executor: an item starts as soon as those it waits for are done, in that pool of the state.
 
     Modules are functions of their inputs, so the results are the same bits as in order. Values are let go
     at the end of the block: which reader is the last is not known before.
@@ -38,7 +38,7 @@ def side_by_side(block: Block, items: list[Run], pool: ThreadPoolExecutor) -> Ru
         return in_order(block, items)
 
     def run(state: State, frame: Frame) -> None:
-        _run_all(block, items, pool, state, frame)
+        _run_all(block, items, state.pools[pool], state, frame)
         for frees in block.frees:
             for slot in frees:
                 state.slots[slot] = None

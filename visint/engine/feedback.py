@@ -22,21 +22,21 @@ from visint.schedule.steps import Start
 __all__ = ["begin", "carry", "to_level"]
 
 
-def begin(state: State, cells: Iterable[Cell], frame: Frame, camera: Camera | None) -> None:
+def begin(state: State, cells: Iterable[Cell], frame: Frame) -> None:
     """Gives each cell that has no value yet its start."""
     for cell in cells:
         if cell.slot not in state.begun:
-            state.slots[cell.slot] = _start(state, cell, frame, camera)
+            state.slots[cell.slot] = _start(state, cell, frame)
             state.begun[cell.slot] = frame.level
 
 
-def _start(state: State, cell: Cell, frame: Frame, camera: Camera | None) -> Any:
+def _start(state: State, cell: Cell, frame: Frame) -> Any:
     if isinstance(cell.start, Start):
         return state.slots[cell.start.slot]
     if cell.start is None:
         return None
     if cell.start == "plane":
-        return _plane(cell.port, frame, camera)
+        return _plane(cell.port, frame, state.camera)
     if cell.port.array is None:
         return bool(cell.start) if cell.port.kind == "Flag" else cell.start
     return read_only(np.full(_size(cell.port, frame), cell.start, cell.port.array.dtype))

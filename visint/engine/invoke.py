@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+from visint.engine.state import State
 from visint.errors import ModuleError
 from visint.module import Context, Params, Ports, PortSpec
 from visint.registry.load import AnyModule
@@ -13,7 +14,7 @@ from visint.registry.load import AnyModule
 __all__ = ["Invoke", "Values", "invoke_module"]
 
 Values = dict[str, Any]
-Invoke = Callable[[Values, Context], Any]
+Invoke = Callable[[Values, Context, State], Any]
 _set = object.__setattr__
 
 
@@ -29,7 +30,7 @@ def invoke_module(module: type[AnyModule], params: Any) -> Invoke:
     agree, fields, new = inputs_type.dims_agree, set(inputs_type.model_fields), inputs_type.__new__
     shared = _shared(inputs_type, outputs_type)
 
-    def invoke(values: Values, context: Context) -> Mapping[str, Any]:
+    def invoke(values: Values, context: Context, state: State) -> Mapping[str, Any]:  # noqa: ARG001 - one form
         try:
             agree(values)
         except ValueError as error:

@@ -10,7 +10,6 @@ from visint.engine.frame import Frame
 from visint.engine.state import State
 from visint.errors import InputError
 from visint.events import LevelStarted, LoopEnded
-from visint.fields.camera import Camera
 from visint.fields.kinds import down
 from visint.fields.resampling import levels_down_to, smaller
 from visint.results import records
@@ -22,11 +21,10 @@ __all__ = ["Levels"]
 class Levels:
     """A pyramid made ready to run."""
 
-    def __init__(self, pyramid: Pyramid, body: Run, restarts: tuple[int, ...], camera: Camera | None) -> None:
+    def __init__(self, pyramid: Pyramid, body: Run, restarts: tuple[int, ...]) -> None:
         self._pyramid = pyramid
         self._body = body
         self._restarts = restarts
-        self._camera = camera
 
     def __call__(self, state: State, frame: Frame) -> None:
         """Runs the body once a level, coarsest first.
@@ -47,7 +45,7 @@ class Levels:
             for slot in self._restarts:
                 state.begun.pop(slot, None)
             to_level(state, self._pyramid.carried, level, sizes, self._pyramid.loop.spec.between)
-            begin(state, self._pyramid.cells, inner, self._camera)
+            begin(state, self._pyramid.cells, inner)
             self._body(state, inner)
             carry(state, self._pyramid.cells, level)
         name = self._pyramid.loop.name

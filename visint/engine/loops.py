@@ -11,7 +11,6 @@ from visint.engine.frame import Frame
 from visint.engine.state import State
 from visint.errors import ModuleError, Problem
 from visint.events import LoopEnded, TurnFinished, Warned
-from visint.fields.camera import Camera
 from visint.results import records
 from visint.schedule import Repeat
 
@@ -21,11 +20,10 @@ __all__ = ["Turns"]
 class Turns:
     """A turn loop made ready to run."""
 
-    def __init__(self, repeat: Repeat, body: Run, restarts: tuple[int, ...], camera: Camera | None) -> None:
+    def __init__(self, repeat: Repeat, body: Run, restarts: tuple[int, ...]) -> None:
         self._repeat = repeat
         self._body = body
         self._restarts = restarts
-        self._camera = camera
         self._until = repeat.loop.until.spec if repeat.loop.until else None
         self._times = repeat.loop.spec.times or 1
 
@@ -44,7 +42,7 @@ class Turns:
         for turn in range(self._times):
             for slot in self._restarts:
                 state.begun.pop(slot, None)
-            begin(state, self._repeat.cells, frame, self._camera)
+            begin(state, self._repeat.cells, frame)
             self._body(state, Frame(frame.level, frame.size, (*frame.turns, turn)))
             carry(state, self._repeat.cells, frame.level)
             change = self._change(state, frame, turn, before)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from threading import Event as Flag
 from typing import Any
@@ -10,6 +11,7 @@ from typing import Any
 from visint.engine.frame import Frame
 from visint.errors import Cancelled
 from visint.events import Event, Measured, Observer, Warned
+from visint.fields.camera import Camera
 from visint.results import records
 
 __all__ = ["State"]
@@ -24,9 +26,10 @@ class State:
 
     slots: list[Any]
     seed: int = 0
-    size: tuple[int, int] | None = None
+    camera: Camera | None = None
     warm: Mapping[str, Any] = field(default_factory=dict)
     cancel: Flag = field(default_factory=Flag)
+    pools: Sequence[ThreadPoolExecutor] = ()
     emit: Callable[[Event], None] | None = None
     begun: dict[int, int] = field(default_factory=dict)  # cell → the level its value is at
     record: records.Record = field(default_factory=records.Record)

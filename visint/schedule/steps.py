@@ -110,9 +110,9 @@ class Pyramid:
 Item = Step | Repeat | Pyramid
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Schedule:
-    """A whole graph in order.
+    """A whole graph in order; what is made from it can be kept by it.
 
     Attributes
     ----------
