@@ -75,7 +75,8 @@ def _concerns(blocks: Sequence[Block], source: End, target: End) -> bool:
 
 
 def _lone(block: Block) -> bool:
-    return len(block.placed) == 1 and not block.frames
+    """Whether it is a single box, neither a loop nor a hub (be it one without spokes)."""
+    return len(block.placed) == 1 and not block.frames and block.placed[0].box.role != "map"
 
 
 def _with_role(blocks: Sequence[Block], *roles: str) -> list[int]:
