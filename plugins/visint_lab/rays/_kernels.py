@@ -4,16 +4,17 @@ A scene arrives as one named tuple of arrays (:class:`visint_lab.render.packing.
 turned into each thing's own frame by a rotation and a shift, so that distances along a ray are the same in
 every frame.
 
-These functions are compiled as parts of ``render/_kernels.py`` and kept in its cache, which does not look
-at this file's date: after a change here, touch that one.
+These functions are compiled as parts of ``render/_kernels.py`` and kept in its cache.
 """
 
-# mypy: disable-error-code="no-untyped-def"
+# mypy: disable-error-code="no-untyped-def, no-untyped-call, attr-defined"
 # ruff: noqa: PLR0917, PLR0124 - numba types what it compiles, wants plain numbers, and NaN is not itself
 
 from __future__ import annotations
 
+import marshal
 import math
+import zlib
 
 import numpy as np
 from numba import njit
@@ -78,7 +79,7 @@ def meet_box(things, i, ox, oy, oz, dx, dy, dz, near):
 
 
 @njit(error_model="numpy")
-def _first_root(c2, c1, c0, low, high):
+def first_root(c2, c1, c0, low, high):
     """The first t in [low, high] where t⁴ + c2 t² + c1 t + c0 passes from above to below 0, or FAR."""
     p, q = c2 / 2.0, c1 / 4.0  # t³ + p t + q = 0 where the slope vanishes
     stops = np.empty(4)
@@ -142,7 +143,7 @@ def meet_torus(things, i, ox, oy, oz, dx, dy, dz, near):
     c2 = 2.0 * g - 4.0 * big * big * (dx * dx + dy * dy)
     c1 = -8.0 * big * big * (px * dx + py * dy)
     c0 = g * g - 4.0 * big * big * (px * px + py * py)
-    t = _first_root(c2, c1, c0, low, high)
+    t = first_root(c2, c1, c0, low, high)
     return (t + mid if t < FAR else FAR), 0
 
 
@@ -227,7 +228,7 @@ def meet_heights(things, i, heights, ox, oy, oz, dx, dy, dz, near):
 
 
 @njit(error_model="numpy")
-def _entry(bounds, node, ox, oy, oz, ix, iy, iz, near, far):
+def entry_box(bounds, node, ox, oy, oz, ix, iy, iz, near, far):
     """Where a ray of inverse direction (ix, iy, iz) enters a node's box, FAR if not between near and far."""
     x0, x1 = (bounds[node, 0] - ox) * ix, (bounds[node, 3] - ox) * ix
     y0, y1 = (bounds[node, 1] - oy) * iy, (bounds[node, 4] - oy) * iy
@@ -238,7 +239,7 @@ def _entry(bounds, node, ox, oy, oz, ix, iy, iz, near, far):
 
 
 @njit(error_model="numpy")
-def _in_leaf(triangles, first, last, ox, oy, oz, dx, dy, dz, near, best):
+def in_leaf(triangles, first, last, ox, oy, oz, dx, dy, dz, near, best):
     """Nearest of a few triangles (Möller and Trumbore 1997, doi:10.1080/10867651.1997.10487468)."""
     face = -1
     for k in range(first, last):
@@ -268,15 +269,15 @@ def meet_mesh(root, bounds, links, triangles, ox, oy, oz, dx, dy, dz, near, far,
     ix = 1.0 / dx if dx != 0.0 else FAR
     iy = 1.0 / dy if dy != 0.0 else FAR
     iz = 1.0 / dz if dz != 0.0 else FAR
-    if _entry(bounds, root, ox, oy, oz, ix, iy, iz, near, far) == FAR:
+    if entry_box(bounds, root, ox, oy, oz, ix, iy, iz, near, far) == FAR:
         return FAR, 0
     stack = np.empty(64, np.int64)
     top, node = 0, root
     while True:
         first, second = links[node, 0], links[node, 1]
         if second > 0:
-            here = _entry(bounds, first, ox, oy, oz, ix, iy, iz, near, best)
-            there = _entry(bounds, second, ox, oy, oz, ix, iy, iz, near, best)
+            here = entry_box(bounds, first, ox, oy, oz, ix, iy, iz, near, best)
+            there = entry_box(bounds, second, ox, oy, oz, ix, iy, iz, near, best)
             if there < here:
                 first, second, here, there = second, first, there, here
             if there < FAR:
@@ -286,7 +287,7 @@ def meet_mesh(root, bounds, links, triangles, ox, oy, oz, dx, dy, dz, near, far,
                 node = first
                 continue
         else:
-            best, found = _in_leaf(triangles, first, first - second, ox, oy, oz, dx, dy, dz, near, best)
+            best, found = in_leaf(triangles, first, first - second, ox, oy, oz, dx, dy, dz, near, best)
             if found >= 0:
                 face = found
                 if anything:
@@ -294,7 +295,7 @@ def meet_mesh(root, bounds, links, triangles, ox, oy, oz, dx, dy, dz, near, far,
         while top > 0:  # boxes behind what was found meanwhile need no look
             top -= 1
             node = stack[top]
-            if _entry(bounds, node, ox, oy, oz, ix, iy, iz, near, best) < FAR:
+            if entry_box(bounds, node, ox, oy, oz, ix, iy, iz, near, best) < FAR:
                 break
         else:
             break
@@ -342,9 +343,17 @@ def nearest(scene, ox, oy, oz, dx, dy, dz, near, far, anything):
                 qz,
                 near,
                 best,
+                anything,
             )
         if t < best:
             best, which, where = t, i, face
             if anything:
                 break
     return best, which, where
+
+
+def revision() -> int:
+    """A number that changes with this file's code: numba's cache looks at the caller's file alone."""
+    parts = [entry_box, meet_quadric, meet_box, first_root, meet_torus, spline, meet_heights, in_leaf]
+    parts += [meet_mesh, nearest]
+    return zlib.crc32(b"".join(marshal.dumps(part.py_func.__code__) for part in parts))

@@ -3,7 +3,7 @@
 Two kernels: :func:`paint` (supersampled brightness) and :func:`probe` (exact truth along single rays).
 """
 
-# mypy: disable-error-code="no-untyped-def"
+# mypy: disable-error-code="no-untyped-def, no-untyped-call, attr-defined"
 # ruff: noqa: PLR0917 - numba types what it compiles, wants plain numbers, and NaN is not itself
 
 from __future__ import annotations
@@ -13,7 +13,17 @@ import math
 import numpy as np
 from numba import njit
 
-from visint_lab.rays._kernels import BOX, FAR, HEIGHTS, MESH, QUADRIC, TORUS, nearest, spline
+from visint_lab.rays._kernels import (
+    BOX,
+    FAR,
+    HEIGHTS,
+    MESH,
+    QUADRIC,
+    TORUS,
+    nearest,
+    revision,
+    spline,
+)
 
 PLAIN, CHECKER, NOISE, PICTURE, SPLIT = 0, 1, 2, 3, 4
 # Columns of probe's result
@@ -200,55 +210,70 @@ def _look(scene, lamp, ox, oy, oz, dx, dy, dz):
     return t, nx, ny, nz, which, face, mark, lit, albedo, brightness
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def paint(scene, lamp, eye, aim, samples, image):
-    """Fills ``image`` (H, W) with the mean brightness of samples × samples rays a pixel."""
-    height, width = image.shape
-    offsets = np.empty((samples * samples, 2))
-    for k in range(samples * samples):
-        offsets[k, 0] = (k % samples + 0.5) / samples - 0.5
-        offsets[k, 1] = (k // samples + 0.5) / samples - 0.5
-    share = 1.0 / (samples * samples)
-    for row in range(height):
-        for column in range(width):
-            total = 0.0
-            for k in range(samples * samples):
-                u = column + offsets[k, 0]
-                v = row + offsets[k, 1]
-                dx = aim[0, 0] * u + aim[0, 1] * v + aim[0, 2]
-                dy = aim[1, 0] * u + aim[1, 1] * v + aim[1, 2]
-                dz = aim[2, 0] * u + aim[2, 1] * v + aim[2, 2]
-                s = 1.0 / math.sqrt(dx * dx + dy * dy + dz * dz)
-                seen = _look(scene, lamp, eye[0], eye[1], eye[2], dx * s, dy * s, dz * s)
-                total += seen[9]
-            image[row, column] = total * share
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def probe(scene, lamp, eye, aim, other, spots, out):
-    """Fills ``out`` (N, COLUMNS) for rays through image points ``spots`` (N, 2), without supersampling.
-
-    SEEN says whether the straight line from the surface point to ``other`` (another eye) is free.
+def _cached(rays):
+    """The two kernels. A value they close over is part of numba's cache key, so that a change in the file of
+    the rays' functions, which the cache does not look at, is no stale kernel.
     """
-    for i in range(spots.shape[0]):
-        u, v = spots[i, 0], spots[i, 1]
-        dx = aim[0, 0] * u + aim[0, 1] * v + aim[0, 2]
-        dy = aim[1, 0] * u + aim[1, 1] * v + aim[1, 2]
-        dz = aim[2, 0] * u + aim[2, 1] * v + aim[2, 2]
-        length = math.sqrt(dx * dx + dy * dy + dz * dz)
-        dx, dy, dz = dx / length, dy / length, dz / length
-        seen = _look(scene, lamp, eye[0], eye[1], eye[2], dx, dy, dz)
-        t = seen[0]
-        row = out[i]
-        row[NX], row[NY], row[NZ] = seen[1], seen[2], seen[3]
-        row[THING], row[FACE], row[MARK], row[LIT] = seen[4], seen[5], seen[6], seen[7]
-        row[ALBEDO], row[BRIGHTNESS] = seen[8], seen[9]
-        if seen[4] < 0:
-            row[DEPTH], row[SEEN] = np.nan, 0.0
-            continue
-        row[DEPTH] = t / length
-        wx, wy, wz = eye[0] + t * dx, eye[1] + t * dy, eye[2] + t * dz
-        tx, ty, tz = other[0] - wx, other[1] - wy, other[2] - wz
-        reach = math.sqrt(tx * tx + ty * ty + tz * tz)
-        _, blocker, _ = nearest(scene, wx, wy, wz, tx / reach, ty / reach, tz / reach, 1e-6 * t, reach, True)
-        row[SEEN] = 0.0 if blocker >= 0 else 1.0
+
+    @njit(cache=True, nogil=True, error_model="numpy")
+    def paint(scene, lamp, eye, aim, samples, image):
+        """Fills ``image`` (H, W) with the mean brightness of samples × samples rays a pixel."""
+        if rays < 0:
+            return
+        height, width = image.shape
+        offsets = np.empty((samples * samples, 2))
+        for k in range(samples * samples):
+            offsets[k, 0] = (k % samples + 0.5) / samples - 0.5
+            offsets[k, 1] = (k // samples + 0.5) / samples - 0.5
+        share = 1.0 / (samples * samples)
+        for row in range(height):
+            for column in range(width):
+                total = 0.0
+                for k in range(samples * samples):
+                    u = column + offsets[k, 0]
+                    v = row + offsets[k, 1]
+                    dx = aim[0, 0] * u + aim[0, 1] * v + aim[0, 2]
+                    dy = aim[1, 0] * u + aim[1, 1] * v + aim[1, 2]
+                    dz = aim[2, 0] * u + aim[2, 1] * v + aim[2, 2]
+                    s = 1.0 / math.sqrt(dx * dx + dy * dy + dz * dz)
+                    seen = _look(scene, lamp, eye[0], eye[1], eye[2], dx * s, dy * s, dz * s)
+                    total += seen[9]
+                image[row, column] = total * share
+
+    @njit(cache=True, nogil=True, error_model="numpy")
+    def probe(scene, lamp, eye, aim, other, spots, out):
+        """Fills ``out`` (N, COLUMNS) for rays through image points ``spots`` (N, 2), without supersampling.
+
+        SEEN says whether the straight line from the surface point to ``other`` (another eye) is free.
+        """
+        if rays < 0:
+            return
+        for i in range(spots.shape[0]):
+            u, v = spots[i, 0], spots[i, 1]
+            dx = aim[0, 0] * u + aim[0, 1] * v + aim[0, 2]
+            dy = aim[1, 0] * u + aim[1, 1] * v + aim[1, 2]
+            dz = aim[2, 0] * u + aim[2, 1] * v + aim[2, 2]
+            length = math.sqrt(dx * dx + dy * dy + dz * dz)
+            dx, dy, dz = dx / length, dy / length, dz / length
+            seen = _look(scene, lamp, eye[0], eye[1], eye[2], dx, dy, dz)
+            t = seen[0]
+            row = out[i]
+            row[NX], row[NY], row[NZ] = seen[1], seen[2], seen[3]
+            row[THING], row[FACE], row[MARK], row[LIT] = seen[4], seen[5], seen[6], seen[7]
+            row[ALBEDO], row[BRIGHTNESS] = seen[8], seen[9]
+            if seen[4] < 0:
+                row[DEPTH], row[SEEN] = np.nan, 0.0
+                continue
+            row[DEPTH] = t / length
+            wx, wy, wz = eye[0] + t * dx, eye[1] + t * dy, eye[2] + t * dz
+            tx, ty, tz = other[0] - wx, other[1] - wy, other[2] - wz
+            reach = math.sqrt(tx * tx + ty * ty + tz * tz)
+            _, blocker, _ = nearest(
+                scene, wx, wy, wz, tx / reach, ty / reach, tz / reach, 1e-6 * t, reach, True
+            )
+            row[SEEN] = 0.0 if blocker >= 0 else 1.0
+
+    return paint, probe
+
+
+paint, probe = _cached(revision())
