@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 from visint.engine.state import State
@@ -15,6 +16,7 @@ __all__ = ["Invoke", "Values", "invoke_module"]
 
 Values = dict[str, Any]
 Invoke = Callable[[Values, Context, State], Any]
+Check = Callable[[Values, Mapping[str, Any]], None]
 _set = object.__setattr__
 
 
@@ -44,32 +46,43 @@ def invoke_module(module: type[AnyModule], params: Any) -> Invoke:
         if type(outputs) is not outputs_type:
             raise ModuleError.of("VI402", _no_outputs(outputs, outputs_type))
         given = outputs.__dict__
-        for dim in shared:
-            dim.check(values, given)
+        for check in shared:
+            check(values, given)
         return given
 
     return invoke
 
 
+def _alike(source: PortSpec, target: PortSpec, dims: tuple[_Dim, ...]) -> Check:
+    """A check that two ports agree in the dims that both name."""
+    before_of, after_of = _array_on(source), _array_on(target)
+    aligned = all(dim.source_axis == dim.target_axis for dim in dims)
+
+    def check(values: Values, given: Mapping[str, Any]) -> None:
+        before, after = before_of(values), after_of(given)
+        if before is None or after is None or (aligned and before.shape == after.shape):
+            return
+        for name, i, j in dims:
+            wanted, found = before.shape[i], after.shape[j]
+            if wanted != found:
+                ports = f"input {source.name!r} but {found} on output {target.name!r}"
+                raise ModuleError.of("VI402", f"{name} is {wanted} on {ports}")
+
+    return check
+
+
 class _Dim(NamedTuple):
-    """A dim that inputs and outputs share: a port of either side that has it, and its axis there."""
+    """A dim that two ports share, and its axis on either."""
 
     name: str
-    source: PortSpec
     source_axis: int
-    target: PortSpec
     target_axis: int
 
-    def check(self, values: Values, given: Mapping[str, Any]) -> None:
-        before = _first(values[self.source.name], self.source)
-        after = _first(given[self.target.name], self.target)
-        if before is None or after is None:
-            return
-        wanted, found = before.shape[self.source_axis], after.shape[self.target_axis]
-        if wanted != found:
-            ports = f"input {self.source.name!r} but {found} on output {self.target.name!r}"
-            said = f"{self.name} is {wanted} on {ports}"
-            raise ModuleError.of("VI402", said)
+
+def _array_on(port: PortSpec) -> Callable[[Mapping[str, Any]], Any]:
+    if port.many or port.evidence:
+        return lambda values: _first(values[port.name], port)
+    return itemgetter(port.name)
 
 
 def _first(value: Any, port: PortSpec) -> Any:
@@ -80,10 +93,17 @@ def _first(value: Any, port: PortSpec) -> Any:
 
 
 @lru_cache(maxsize=256)
-def _shared(inputs: type[Ports], outputs: type[Ports]) -> tuple[_Dim, ...]:
+def _shared(inputs: type[Ports], outputs: type[Ports]) -> tuple[Check, ...]:
+    """One check a pair of ports, for the dims that inputs and outputs share."""
     sources = {dim: (port, axis) for port, axis, dim in _dims(inputs)}
     targets = {dim: (port, axis) for port, axis, dim in _dims(outputs)}
-    return tuple(_Dim(dim, *sources[dim], *targets[dim]) for dim in targets if dim in sources)
+    pairs: dict[tuple[str, str], tuple[_Dim, ...]] = {}
+    for dim, (target, j) in targets.items():
+        if dim in sources:
+            source, i = sources[dim]
+            pair = source.name, target.name
+            pairs[pair] = (*pairs.get(pair, ()), _Dim(dim, i, j))
+    return tuple(_alike(inputs.specs[a], outputs.specs[b], dims) for (a, b), dims in pairs.items())
 
 
 def _dims(ports: type[Ports]) -> Iterator[tuple[PortSpec, int, str]]:
