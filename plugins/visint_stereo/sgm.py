@@ -10,19 +10,13 @@ from visint.fields import Camera, DisparityEvidence
 from visint.module import Context, Module, Params, Ports
 from visint_stereo.semiglobal.brightness import graded
 from visint_stereo.semiglobal.calming import calmed
-from visint_stereo.semiglobal.consistency import agreed, occluded, without_speckles
-from visint_stereo.semiglobal.fill import from_behind
-from visint_stereo.semiglobal.refine import refined
-from visint_stereo.semiglobal.reliability import TrainedOn, contrast, reliability, signs
+from visint_stereo.semiglobal.match import Settings
+from visint_stereo.semiglobal.reliability import TrainedOn
+from visint_stereo.semiglobal.resolution import matched_within
 from visint_stereo.semiglobal.search_range import estimated, within
-from visint_stereo.semiglobal.volume import Levels, Penalties, Volume, census, matching_costs, path_costs
-from visint_stereo.semiglobal.winner import winners
+from visint_stereo.semiglobal.volume import Levels, Penalties
 
 __all__ = ["SemiGlobal"]
-
-
-FILLED = 4.0
-"""Sigma of a disparity filled from its neighbours, px."""
 
 
 class SemiGlobalParams(Params):
@@ -56,9 +50,10 @@ class SemiGlobalParams(Params):
     speckle: int = Field(default=100, ge=0)
     trained_on: TrainedOn = "all"
 
-    def penalties(self) -> Penalties:
-        """The penalties as the volume wants them."""
-        return Penalties(self.small_jump, (self.large_jump, self.even_jump), outside=self.outside)
+    def settings(self, scale: int) -> Settings:
+        """What the matching wants to know, at a level of this scale."""
+        penalties = Penalties(self.small_jump, (self.large_jump, self.even_jump), outside=self.outside)
+        return Settings(penalties, self.tolerance, self.speckle // scale**2, self.trained_on)
 
 
 class SemiGlobalInputs(Ports):
@@ -90,39 +85,32 @@ class SemiGlobal(Module[SemiGlobalParams, SemiGlobalInputs, SemiGlobalOutputs]):
     survives), agreement of both views, speckle removal, holes filled from behind.
 
     Assumes a rectified pair; brightness may differ by any monotonic curve. Says nothing (NaN, reliability 0)
-    where no texture lies within reach.
+    where no texture lies within reach. Large pairs (above 40 million pixels times levels) are matched at half
+    size first and then within 8 px of that.
     """
 
     name = "sgm"
 
     def run(self, inputs: SemiGlobalInputs, ctx: Context) -> SemiGlobalOutputs:
         """Match the pair; arrays of the images' size, in pixels of the level."""
-        here, there, blur = calmed(inputs.left, inputs.right)
-        ctx.measure("blur", blur)
-        left, right = graded(here), graded(there)
+        left, right, blur = calmed(inputs.left, inputs.right)
         levels = self._levels(inputs.camera, left, right, ctx)
+        ctx.measure("blur", blur)
         ctx.measure("first disparity", levels.first)
         ctx.measure("last disparity", levels.last)
-        won = winners(self._volume(left, right, levels, ctx))
-        ctx.check()
-        seen = np.isfinite(inputs.left) & (contrast(left) > 0)
-        trusted = seen & agreed(won.disparity, won.right, self.params.tolerance)
-        trusted = without_speckles(won.disparity, trusted, self.params.speckle // ctx.scale**2)
-        views = (left.astype(np.float32) / 16, right.astype(np.float32) / 16)
-        fine, sigma = refined(won.disparity, trusted, views, levels)
-        disparity = from_behind(fine, trusted)
-        trust = reliability(signs(left, won, trusted, np.nan_to_num(disparity)), self.params.trained_on)
+        match = matched_within(left, right, levels, self.params.settings(ctx.scale), ctx.check)
+        known = np.isfinite(inputs.left)
         return SemiGlobalOutputs(
-            disparity=DisparityEvidence.of(disparity, np.where(trusted, sigma, FILLED), seen * trust),
-            consistent=trusted,
-            occluded=occluded(won.disparity, won.right, trusted),
+            disparity=DisparityEvidence.of(match.disparity, match.sigma, known * match.trust),
+            consistent=known & match.consistent,
+            occluded=match.hidden,
         )
 
     def _levels(self, camera: Camera | None, left: Array, right: Array, ctx: Context) -> Levels:
         low, high = self.params.min_disparity, self.params.max_disparity
         given = camera.disparity_range if camera else None
         if given is None and (low is None or high is None):
-            found = estimated(left, right)
+            found = estimated(graded(left), graded(right))
             given = (float(found.first), float(found.last))
         first, last = given or (0.0, 0.0)
         return within(
@@ -130,9 +118,3 @@ class SemiGlobal(Module[SemiGlobalParams, SemiGlobalInputs, SemiGlobalOutputs]):
             last if high is None else high / ctx.scale,
             left.shape[1],
         )
-
-    def _volume(self, left: Array, right: Array, levels: Levels, ctx: Context) -> Volume:
-        penalties = self.params.penalties()
-        cost = matching_costs(census(left), census(right), levels, penalties.outside)
-        ctx.check()
-        return Volume(levels, path_costs(cost, left, penalties, ctx.check))

@@ -85,24 +85,25 @@ def census(image, words):
 
 
 @njit(cache=True, nogil=True)
-def hamming(left, mirrored, first, neutral, cost):
-    """Census distances: left uint64 (H, W), right mirrored in x -> cost uint8 (H, W, D), d = first + k.
+def hamming(left, mirrored, first, base, neutral, cost):
+    """Census distances: left uint64 (H, W), right mirrored in x -> cost uint8 (H, W, D).
 
+    Level k of a pixel is the disparity d = first + base[y, x] + k; base int32 (H, W).
     Where the right pixel x - d lies outside the image the cost is ``neutral``: neither for nor against.
     """
     rows, columns, depth = cost.shape
     for y in range(rows):
         for x in range(columns):
-            base = columns - 1 - x + first
-            begin = min(max(0, -base), depth)
-            end = max(begin, min(depth, columns - base))
+            start = columns - 1 - x + first + base[y, x]
+            begin = min(max(0, -start), depth)
+            end = max(begin, min(depth, columns - start))
             for k in range(begin):
                 cost[y, x, k] = neutral
             for k in range(end, depth):
                 cost[y, x, k] = neutral
             word = left[y, x]
             for k in range(U(begin), U(end)):
-                cost[y, x, k] = _popcount(word ^ mirrored[y, U(U(base + begin) + (k - U(begin)))])
+                cost[y, x, k] = _popcount(word ^ mirrored[y, U(U(start + begin) + (k - U(begin)))])
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -127,18 +128,19 @@ def _walk(paths, before, here, floor, cost, at, total, depth, small, large):
 
 
 @njit(cache=True, nogil=True)
-def aggregate(cost, shape, brightness, small, steep, total, way):
+def aggregate(cost, shape, base, pad, brightness, small, steep, total, way):
     """Four of the eight paths: from the left and from above (``way`` 1), or from the right and below (-1).
 
-    Parameters: cost uint8 flat, brightness uint8 (H, W), ``small`` P1, ``steep`` uint8 (256,) P2 by
-    brightness step, total uint16 flat, added to.
+    Parameters: cost uint8 flat; base int32 (H, W) as in :func:`hamming` (neighbours' levels are shifted to
+    stand for the same disparity, by at most ``pad``: D if base varies, 0 if it is 0); brightness uint8 (H, W);
+    ``small`` P1; ``steep`` uint8 (256,) P2 by brightness step; total uint16 flat, added to.
     """
     rows, columns, wide = shape
     depth = U(wide)
-    stride = U(wide + 2)
+    stride = U(wide + 2 + 2 * pad)
     # paths 0 to 2 come from the row before (diagonal, vertical, diagonal), path 3 along this row. A pixel's
     # slot lies before its predecessor's: LLVM's test for overlap would otherwise refuse to vectorise path 3.
-    paths = np.full(2 * 4 * (columns + 2) * (wide + 2), SENTINEL, dtype=np.uint8)
+    paths = np.full(2 * 4 * (columns + 2) * (wide + 2 + 2 * pad), SENTINEL, dtype=np.uint8)
     floors = np.zeros((2, 4, columns + 2), dtype=np.uint8)
     first_row, first_column = (0, 0) if way > 0 else (rows - 1, columns - 1)
     for row in range(rows):
@@ -152,7 +154,7 @@ def aggregate(cost, shape, brightness, small, steep, total, way):
                 half = then if path < 3 else now
                 py, px = y - way if path < 3 else y, first_column + way * past
                 slot = columns - column
-                here = U((now * 4 + path) * (columns + 2) + slot) * stride
+                here = U((now * 4 + path) * (columns + 2) + slot) * stride + U(pad)
                 if past < 0 or past >= columns or py < 0 or py >= rows:
                     least = np.uint8(255)
                     for k in range(depth):
@@ -161,7 +163,8 @@ def aggregate(cost, shape, brightness, small, steep, total, way):
                         least = _least(least, value)
                         total[at + k] = _sum16(total[at + k], value)
                 else:
-                    before = U((half * 4 + path) * (columns + 2) + columns - past) * stride
+                    shift = min(max(base[y, x] - base[py, px], -pad), pad)
+                    before = U((half * 4 + path) * (columns + 2) + columns - past) * stride + U(pad + shift)
                     step = abs(np.int64(brightness[y, x]) - np.int64(brightness[py, px]))
                     floor = floors[half, path, columns - past]
                     least = _walk(paths, before, here, floor, cost, at, total, depth, small, steep[step])
@@ -202,11 +205,11 @@ def winners(total, shape, best, least, second, crowd):
 
 
 @njit(cache=True, nogil=True)
-def right_winners(total, shape, first, best):
+def right_winners(total, shape, first, base, best):
     """The cheapest disparity of each right pixel from the same volume: min over d of S(x + d, d); int32."""
     rows, columns, wide = shape
-    # mirrored and shifted: level k of pixel x goes to slot (columns - 1 - x + k), so that slots ascend with k
-    slots = columns + wide
+    # mirrored and shifted: disparity first + l of pixel x goes to slot (columns - 1 - x + l), ascending with l
+    slots = columns + wide + base.max()
     lows = np.empty(slots, dtype=np.uint16)
     levels = np.empty(slots, dtype=np.uint16)
     for y in range(rows):
@@ -214,11 +217,12 @@ def right_winners(total, shape, first, best):
         levels[:] = np.uint16(0)
         for x in range(columns):
             at = U((y * columns + x) * wide)
-            slot = U(columns - 1 - x)
+            slot = U(columns - 1 - x + base[y, x])
+            floor = U(base[y, x])
             for k in range(U(wide)):
                 cheaper = total[at + k] < lows[slot + k]
                 lows[slot + k] = total[at + k] if cheaper else lows[slot + k]
-                levels[slot + k] = np.uint16(k) if cheaper else levels[slot + k]
+                levels[slot + k] = np.uint16(floor + k) if cheaper else levels[slot + k]
         for x in range(columns):
             slot = columns - 1 - x - first
             best[y, x] = -32768
@@ -227,13 +231,13 @@ def right_winners(total, shape, first, best):
 
 
 @njit(cache=True, nogil=True)
-def between_levels(total, shape, best, first, disparity):
+def between_levels(total, shape, best, first, base, disparity):
     """Sub-pixel disparity float32 (H, W): V-shaped (equiangular) fit through three costs."""
     rows, columns, wide = shape
     for y in range(rows):
         for x in range(columns):
             k = np.int64(best[y, x])
-            value = np.float32(first + k)
+            value = np.float32(first + base[y, x] + k)
             if 0 < k < wide - 1:
                 at = (y * columns + x) * wide + k
                 low = np.float32(total[at])

@@ -44,8 +44,7 @@ def refined(
     from visint_stereo.semiglobal import _kernels
 
     left, right = views
-    ends = (disparity <= levels.first) | (disparity >= levels.last)
-    firm = np.where(ends, AT_ENDS, STEP).astype(np.float32) ** -2
+    firm = np.where(levels.searched(disparity), STEP, AT_ENDS).astype(np.float32) ** -2
     weight = trusted.astype(np.float32)
     share = np.maximum(_mean(weight, WINDOW), 1e-3)
     around = np.maximum(_mean(weight, SURROUND), 1e-3)

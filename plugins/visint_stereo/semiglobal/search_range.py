@@ -54,6 +54,6 @@ def _coarse(left: Array, right: Array, levels: Levels) -> Array:
     """The trusted disparities of a small pair, 1-D."""
     penalties = Penalties()
     cost = matching_costs(census(left), census(right), levels, penalties.outside)
-    won = winners(Volume(levels, path_costs(cost, left, penalties, lambda: None)))
+    won = winners(Volume(levels, path_costs(cost, levels, left, penalties, lambda: None)))
     trusted = without_speckles(won.disparity, agreed(won.disparity, won.right, 1.0), 20)
     return np.asarray(won.disparity[trusted])

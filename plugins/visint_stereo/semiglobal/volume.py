@@ -16,10 +16,23 @@ Check = Callable[[], None]
 
 @dataclass(frozen=True, slots=True)
 class Levels:
-    """The disparities searched: ``first``, first + 1, …, ``count`` of them, in pixels."""
+    """The disparities searched: ``first``, first + 1, …, ``count`` of them, in pixels.
+
+    ``base`` int32 (H, W), not negative, moves a pixel's levels up: a band around what is known of it.
+    """
 
     first: int
     count: int
+    base: Array | None = None
+
+    def lowest(self, shape: tuple[int, int]) -> Array:
+        """The base of each pixel, int32 (H, W): zeros unless there is one."""
+        return np.zeros(shape, dtype=np.int32) if self.base is None else self.base
+
+    def searched(self, disparity: Array) -> Array:
+        """Bool (H, W): where ``disparity`` lies strictly between the ends of what was searched."""
+        low = self.first + self.lowest(disparity.shape)
+        return np.asarray((disparity > low) & (disparity < low + self.count - 1))
 
     @property
     def last(self) -> int:
@@ -78,11 +91,11 @@ def matching_costs(left: Array, right: Array, levels: Levels, outside: int) -> A
 
     cost = np.empty((*left.shape, levels.count), dtype=np.uint8)
     mirrored = np.ascontiguousarray(right[:, ::-1])
-    _kernels.hamming(left, mirrored, levels.first, np.uint8(outside), cost)
+    _kernels.hamming(left, mirrored, levels.first, levels.lowest(left.shape), np.uint8(outside), cost)
     return cost
 
 
-def path_costs(cost: Array, grades: Array, penalties: Penalties, check: Check) -> Array:
+def path_costs(cost: Array, levels: Levels, grades: Array, penalties: Penalties, check: Check) -> Array:
     """uint16 (H, W, D): ``cost`` summed along eight paths.
 
     Semi-global matching (Hirschmüller 2008, doi:10.1109/TPAMI.2007.1166, Eq. 13), its large penalty falling
@@ -91,10 +104,11 @@ def path_costs(cost: Array, grades: Array, penalties: Penalties, check: Check) -
     from visint_stereo.semiglobal import _kernels
 
     total = np.zeros(cost.size, dtype=np.uint16)
+    base = levels.lowest(grades.shape)
+    pad = 0 if levels.base is None else levels.count
     brightness = (grades >> 4).astype(np.uint8)
+    prices = (brightness, np.uint8(penalties.small), penalties.steep())
     for way in (1, -1):
-        _kernels.aggregate(
-            cost.reshape(-1), cost.shape, brightness, np.uint8(penalties.small), penalties.steep(), total, way
-        )
+        _kernels.aggregate(cost.reshape(-1), cost.shape, base, pad, *prices, total, way)
         check()
     return total.reshape(cost.shape)

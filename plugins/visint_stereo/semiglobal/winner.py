@@ -34,13 +34,13 @@ def winners(volume: Volume) -> Winners:
 
     shape = volume.total.shape
     total = volume.total.reshape(-1)
-    first = volume.levels.first
+    first, base = volume.levels.first, volume.levels.lowest(shape[:2])
     best, right = (np.empty(shape[:2], dtype=np.int32) for _ in range(2))
     least, second, crowd = (np.empty(shape[:2], dtype=np.uint16) for _ in range(3))
     disparity = np.empty(shape[:2], dtype=np.float32)
     _kernels.winners(total, shape, best, least, second, crowd)
-    _kernels.right_winners(total, shape, first, right)
-    _kernels.between_levels(total, shape, best, first, disparity)
+    _kernels.right_winners(total, shape, first, base, right)
+    _kernels.between_levels(total, shape, best, first, base, disparity)
     return Winners(_median(disparity), right, least, second, crowd)
 
 

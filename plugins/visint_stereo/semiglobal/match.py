@@ -1,0 +1,80 @@
+"""One pair, matched from costs to reliability, at one resolution."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from visint.arrays import Array
+from visint_stereo.semiglobal.brightness import graded
+from visint_stereo.semiglobal.consistency import agreed, occluded, without_speckles
+from visint_stereo.semiglobal.fill import from_behind
+from visint_stereo.semiglobal.refine import refined
+from visint_stereo.semiglobal.reliability import TrainedOn, contrast, reliability, signs
+from visint_stereo.semiglobal.volume import (
+    Check,
+    Levels,
+    Penalties,
+    Volume,
+    census,
+    matching_costs,
+    path_costs,
+)
+from visint_stereo.semiglobal.winner import Winners, winners
+
+__all__ = ["Match", "Settings", "matched"]
+
+FILLED = 4.0
+"""Sigma of a disparity filled from its neighbours, px."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What a match depends on beside the images: penalties, px that views may differ, px² of a speckle."""
+
+    penalties: Penalties = field(default_factory=Penalties)
+    tolerance: float = 1.0
+    speckle: int = 100
+    trained_on: TrainedOn = "all"
+
+
+@dataclass(frozen=True, slots=True)
+class Match:
+    """Of the left view, (H, W) each: ``disparity`` and ``sigma`` in px and ``trust`` in [0, 1], float32;
+    ``consistent`` (both views agree) and ``hidden`` (from the right view), bool.
+    """
+
+    disparity: Array
+    sigma: Array
+    trust: Array
+    consistent: Array
+    hidden: Array
+
+
+def matched(left: Array, right: Array, levels: Levels, settings: Settings, check: Check) -> Match:
+    """The match of two linear float32 views (H, W) among ``levels``."""
+    here, there = graded(left), graded(right)
+    won = _won(here, there, levels, settings.penalties, check)
+    check()
+    seen = np.isfinite(left) & (contrast(here) > 0)
+    trusted = seen & agreed(won.disparity, won.right, settings.tolerance)
+    trusted = without_speckles(won.disparity, trusted, settings.speckle)
+    views = (here.astype(np.float32) / 16, there.astype(np.float32) / 16)
+    fine, sigma = refined(won.disparity, trusted, views, levels)
+    disparity = from_behind(fine, trusted)
+    trust = reliability(signs(here, won, trusted, np.nan_to_num(disparity)), settings.trained_on)
+    return Match(
+        disparity,
+        np.where(trusted, sigma, np.float32(FILLED)),
+        np.where(seen, trust, np.float32(0)),
+        trusted,
+        occluded(won.disparity, won.right, trusted),
+    )
+
+
+def _won(here: Array, there: Array, levels: Levels, penalties: Penalties, check: Check) -> Winners:
+    """The winners; the volumes they come from are gone when this returns."""
+    cost = matching_costs(census(here), census(there), levels, penalties.outside)
+    check()
+    return winners(Volume(levels, path_costs(cost, levels, here, penalties, check)))
