@@ -52,7 +52,9 @@ class Look(Module[Params, CameraIn, Camera3]):
         for name, value in (("f", camera.focal_length), ("cx", camera.cx), ("columns", camera.width)):
             ctx.measure(name, value)
         ctx.measure("middle", camera.middle_disparity)
-        return Camera3(f=camera.focal_length, cx=camera.cx, middle=camera.middle_disparity, columns=camera.width)
+        return Camera3(
+            f=camera.focal_length, cx=camera.cx, middle=camera.middle_disparity, columns=camera.width
+        )
 
 
 class Shift(Params):
@@ -350,7 +352,9 @@ outputs: {inner: inner.image, outer: outer.image}
 class TestOneLevelOnly:
     def test_at_overrides_parameters(self, own, image):
         """`at: {2: …}` holds at level 2, the rest of the parameters stays; elsewhere `with` holds."""
-        text = see("levels: 3").replace("loop: levels,", "loop: levels, with: {times: 3.0}, at: {0: {times: 5.0}},")
+        text = see("levels: 3").replace(
+            "loop: levels,", "loop: levels, with: {times: 3.0}, at: {0: {times: 5.0}},"
+        )
         np.testing.assert_allclose(own.run(text, {"left": image})["image"], 5 * image, rtol=1e-6)
         text = text.replace("{0: {times: 5.0}}", "{1: {times: 5.0}}")
         np.testing.assert_allclose(own.run(text, {"left": image})["image"], 3 * image, rtol=1e-6)

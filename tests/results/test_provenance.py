@@ -97,7 +97,7 @@ def test_modules_and_loops_of_sub_graphs_are_told_too(toys, tmp_path):
     path.write_text(INNER)
     result = visint.run(parse_graph(OUTER, toys.catalog(graphs={"inner": path})), value=2.0)
     assert result["value"] == 18
-    assert [stop.loop for stop in result.stops] == ["sweeps", "turns"]
+    assert [stop.loop for stop in result.stops] == ["sweeps", "call.turns"]
     assert set(provenance(result, {})["modules"]) == {"toy.counter", "toy.diverge"}
 
 

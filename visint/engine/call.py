@@ -25,6 +25,8 @@ from visint.schedule.order import per_turn
 
 __all__ = ["Call"]
 
+_event = tuple.__new__
+"""Makes a named tuple in a third of the time that calling its class takes."""
 SubGraph = Callable[[Node], Invoke]
 
 
@@ -111,11 +113,11 @@ class Call:
         return values
 
     def _timed(self, state: State, frame: Frame, values: Values) -> Any:
-        name, level = self.node.name, frame.level
+        name, level = state.within + self.node.name, frame.level
         turn = frame.turns[-1] if frame.turns else 0
         started = perf_counter()
         if state.emit is not None:
-            state.emit(NodeStarted(name, level, turn, started))
+            state.emit(_event(NodeStarted, (name, level, turn, started)))
         try:
             outputs = self._invoke(values, self._context(state, frame), state)
         except BaseException as error:
@@ -127,7 +129,7 @@ class Call:
         total[0] += 1
         total[1] += seconds
         if state.emit is not None:
-            state.emit(NodeFinished(name, level, turn, started, seconds, outputs))
+            state.emit(_event(NodeFinished, (name, level, turn, started, seconds, outputs)))
         return outputs
 
     def _context(self, state: State, frame: Frame) -> Context:
@@ -135,7 +137,7 @@ class Call:
             level=frame.level,
             size=frame.size,
             turns=frame.turns,
-            seed=(state.seed, self._key),
+            seed=(*state.seed, self._key),
             per_turn=self._per_turn,
             note=partial(state.note, self.node.name, frame),
             cancelled=state.cancel.is_set,

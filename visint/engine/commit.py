@@ -9,7 +9,7 @@ import numpy as np
 
 from visint.arrays import Array, read_only
 from visint.engine.invoke import Invoke
-from visint.engine.state import State
+from visint.engine.state import BLIND_GUESS, State
 from visint.errors import ModuleError
 from visint.fields import geometry
 from visint.fields.camera import Camera
@@ -20,10 +20,7 @@ from visint.graph.callees import BEGIN
 from visint.graph.graph import Node
 from visint.module import Context
 
-__all__ = ["Fields", "map_call", "plane"]
-
-_BLIND_GUESS = 0.1
-"""Disparity of the start plane as a share of the image width, where no search range is known."""
+__all__ = ["Fields", "map_call", "plane", "stored_kinds"]
 
 
 class Fields(Mapping[str, Any]):
@@ -53,38 +50,52 @@ def map_call(node: Node) -> Invoke:
 def plane(kind: str, camera: Camera) -> Array:
     """A fronto-parallel plane at the middle of the search range, as ``"Depth"`` or ``"Disparity"``, (H, W)."""
     middle = camera.middle_disparity
-    middle = _BLIND_GUESS * camera.width if middle is None else middle
+    middle = BLIND_GUESS * camera.width if middle is None else middle
     flat = np.full(camera.size, middle, np.float32)
     return read_only(flat if kind == "Disparity" else geometry.depth_from_disparity(flat, camera))
 
 
-def _kinds(node: Node) -> dict[str, FieldKind]:
+def stored_kinds(node: Node) -> dict[str, FieldKind]:
+    """The kind of each field that the map of a ``map.begin`` node stores."""
     stored = [name for name in node.callee.outputs if f"{name}_confidence" in node.callee.outputs]
     specs = {name: node.callee.outputs[name] for name in stored}
     return {name: KINDS.get(spec.kind) or FieldKind(spec.kind, spec.array) for name, spec in specs.items()}
 
 
 def _begin(node: Node, values: dict[str, Any], context: Context, state: State) -> MapSnapshot:
-    camera = values["camera"] or _stand_in(context)
-    last = values["map"]
-    if last is not None:
-        return MapSnapshot(camera, last.kinds, last.values, last.confidence, last.writers)
-    kinds = _kinds(node)
-    starts = {name: _start(name, kind, node, values, camera) for name, kind in kinds.items()}
-    for name, value in state.warm.items():
-        if name in kinds:
-            starts[name] = _down_to(value, kinds[name], context.level)
-    confidence = {name: values.get(f"{name}_confidence") for name in kinds}
-    for name, value in starts.items():
-        if confidence[name] is None and isinstance(value, np.ndarray):
-            confidence[name] = read_only(np.zeros(value.shape[:2], np.float32))
-    return MapSnapshot(camera, kinds, starts, confidence)
-
-
-def _stand_in(context: Context) -> Camera:
-    if context.size is None:
+    camera = values["camera"] or state.camera_at(context.level)
+    if camera is None:
         raise ModuleError.of("VI402", "a map needs an image among the graph's inputs, to know its size")
-    return Camera.uncalibrated(context.size[1], context.size[0])
+    last: MapSnapshot | None = values["map"]
+    if last is None:
+        return _started(node, values, camera, state.warm, context.level)
+    return last if last.camera == camera else last.seen_by(camera)
+
+
+def _started(
+    node: Node, values: dict[str, Any], camera: Camera, warm: Mapping[str, Any], level: int
+) -> MapSnapshot:
+    """The map before anybody wrote into it: each field warm, from the graph's own start, or unknown."""
+    kinds = stored_kinds(node)
+    fields: dict[str, Any] = {}
+    confidence: dict[str, Any] = {}
+    for name, kind in kinds.items():
+        sure = f"{name}_confidence"
+        fields[name] = _warm(warm, name, kind, level, _start(name, kind, node, values, camera))
+        confidence[name] = _warm(warm, sure, KINDS["Confidence"], level, values.get(sure))
+        if confidence[name] is None and isinstance(fields[name], np.ndarray):
+            confidence[name] = read_only(np.zeros(fields[name].shape[:2], np.float32))
+    return MapSnapshot(camera, kinds, fields, confidence)
+
+
+def _warm(warm: Mapping[str, Any], name: str, kind: FieldKind, level: int, otherwise: Any) -> Any:
+    """A field of a warm start, brought down to a level."""
+    if name not in warm:
+        return otherwise
+    value = warm[name]
+    for _ in range(level):
+        value = down(value, kind)
+    return value
 
 
 def _start(name: str, kind: FieldKind, node: Node, values: dict[str, Any], camera: Camera) -> Any:
@@ -97,12 +108,6 @@ def _start(name: str, kind: FieldKind, node: Node, values: dict[str, Any], camer
         return plane(kind.name, camera)
     dtype = kind.array.dtype if kind.array else "float32"
     return read_only(np.full(camera.size, asked, dtype))
-
-
-def _down_to(value: Any, kind: FieldKind, level: int) -> Any:
-    for _ in range(level):
-        value = down(value, kind)
-    return value
 
 
 def _commit(values: dict[str, Any], writer: Writer) -> MapSnapshot:

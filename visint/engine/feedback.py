@@ -12,14 +12,13 @@ from visint.engine.commit import plane
 from visint.engine.frame import Frame
 from visint.engine.state import State
 from visint.errors import InputError
-from visint.fields.camera import Camera
-from visint.fields.kinds import Interpolation, down, up
+from visint.fields.kinds import FieldKind, Interpolation, down, up
 from visint.fields.snapshot import MapSnapshot
 from visint.module import PortSpec
 from visint.schedule import Cell
 from visint.schedule.steps import Start
 
-__all__ = ["begin", "carry", "to_level"]
+__all__ = ["begin", "carry", "coarser", "to_level"]
 
 
 def begin(state: State, cells: Iterable[Cell], frame: Frame) -> None:
@@ -36,27 +35,28 @@ def _start(state: State, cell: Cell, frame: Frame) -> Any:
     if cell.start is None:
         return None
     if cell.start == "plane":
-        return _plane(cell.port, frame, state.camera)
+        return _plane(cell.port, frame, state)
     if cell.port.array is None:
         return bool(cell.start) if cell.port.kind == "Flag" else cell.start
     return read_only(np.full(_size(cell.port, frame), cell.start, cell.port.array.dtype))
 
 
-def _plane(port: PortSpec, frame: Frame, camera: Camera | None) -> Any:
-    rows, columns = _size(port, frame)
+def _plane(port: PortSpec, frame: Frame, state: State) -> Any:
+    camera = state.camera_at(frame.level)
     if camera is None:
-        camera = Camera.uncalibrated(columns, rows)
-    else:
-        for _ in range(frame.level):
-            camera = camera.halved()
+        raise _no_size(port)
     return plane(port.kind, camera)
 
 
 def _size(port: PortSpec, frame: Frame) -> tuple[int, int]:
     if frame.size is None:
-        found = f"the start of {port.name!r} needs a size, and the graph has no image among its inputs"
-        raise InputError.of("VI305", found)
+        raise _no_size(port)
     return frame.size
+
+
+def _no_size(port: PortSpec) -> InputError:
+    found = f"the start of {port.name!r} needs a size, and the graph has no image among its inputs"
+    return InputError.of("VI305", found)
 
 
 def carry(state: State, cells: Iterable[Cell], level: int) -> None:
@@ -86,9 +86,14 @@ def to_level(
             value = _finer(value, cell, sizes[at], between)
         while at < level:
             at += 1
-            value = value.coarser() if isinstance(value, MapSnapshot) else down(value, cell.carry)
+            value = coarser(value, cell.carry)
         state.slots[cell.slot] = value
         state.begun[cell.slot] = level
+
+
+def coarser(value: Any, kind: FieldKind) -> Any:
+    """Any value of ``kind``, the map included, one level coarser."""
+    return value.coarser() if isinstance(value, MapSnapshot) else down(value, kind)
 
 
 def _finer(value: Any, cell: Cell, size: tuple[int, int], between: Mapping[str, Interpolation]) -> Any:

@@ -15,7 +15,7 @@ from visint.graph.graph import Graph
 from visint.graph.spec import InputSpec
 from visint.names import did_you_mean, listed
 
-__all__ = ["accept", "camera_of", "size_of"]
+__all__ = ["accept", "accept_value", "camera_of", "size_of"]
 
 
 def accept(graph: Graph, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -58,11 +58,18 @@ def _accept_one(graph: Graph, name: str, spec: InputSpec, value: Any) -> Any:
             raise InputError.of(
                 "VI305", f"the input {name!r} is a list, {spec}; this is a {type(value).__name__}"
             )
-        return tuple(_one(f"{name}[{i}]", spec.kind, array, one) for i, one in enumerate(value))
-    return _one(name, spec.kind, array, value)
+        return tuple(accept_value(f"{name}[{i}]", spec.kind, array, one) for i, one in enumerate(value))
+    return accept_value(name, spec.kind, array, value)
 
 
-def _one(name: str, kind: str, array: ArraySpec | None, value: Any) -> Any:
+def accept_value(name: str, kind: str, array: ArraySpec | None, value: Any) -> Any:
+    """One value of an input: read-only, of the kind; other floats become the declared one.
+
+    Raises
+    ------
+    InputError
+        VI305, with a hint for whole numbers.
+    """
     if array is None:
         return _plain(name, kind, value)
     value = np.asarray(value) if isinstance(value, list | tuple) else value

@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from visint.engine.executors import Run
-from visint.engine.feedback import begin, carry, to_level
+from visint.engine.feedback import begin, carry, coarser, to_level
 from visint.engine.frame import Frame
 from visint.engine.state import State
 from visint.errors import InputError
 from visint.events import LevelStarted, LoopEnded
-from visint.fields.kinds import down
 from visint.fields.resampling import levels_down_to, smaller
 from visint.results import records
 from visint.schedule import Pyramid
@@ -34,11 +33,12 @@ class Levels:
         InputError
             If the run has no image to take a size from.
         """
+        name = state.within + self._pyramid.loop.name
         sizes = self._sizes(frame)
         fitted = [self._pyramid_of(state.slots[fit.source], fit.kind, len(sizes)) for fit in self._pyramid.fits]
         for level in reversed(range(len(sizes))):
             inner = Frame(level, sizes[level], frame.turns)
-            state.tell(LevelStarted(self._pyramid.loop.name, level, sizes[level]))
+            state.tell(LevelStarted(name, level, sizes[level]))
             for fit, values in zip(self._pyramid.fits, fitted, strict=True):
                 state.slots[fit.slot] = values[level]
                 values[level] = None
@@ -48,7 +48,6 @@ class Levels:
             begin(state, self._pyramid.cells, inner)
             self._body(state, inner)
             carry(state, self._pyramid.cells, level)
-        name = self._pyramid.loop.name
         state.record.stops.append(records.Stop(name, 0, len(sizes), "times"))
         state.tell(LoopEnded(name, 0, len(sizes), "times"))
 
@@ -67,5 +66,5 @@ class Levels:
         """``value`` at each level, full size first."""
         values = [value]
         for _ in range(count - 1):
-            values.append(down(values[-1], kind))
+            values.append(coarser(values[-1], kind))
         return values

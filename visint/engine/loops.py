@@ -50,7 +50,7 @@ class Turns:
                 before = state.slots[self._repeat.change]
                 calm = calm + 1 if self._is_calm(change) else 0
             if state.emit is not None:
-                state.emit(TurnFinished(self._repeat.loop.name, frame.level, turn, change))
+                state.emit(TurnFinished(state.within + self._repeat.loop.name, frame.level, turn, change))
             ended = self._ended(state, calm)
             if ended is not None:
                 reason = ended
@@ -62,7 +62,8 @@ class Turns:
         if self._repeat.change is None or turn == 0:
             return None
         change = relative_change(before, state.slots[self._repeat.change])
-        state.record.turns.append(records.Turn(self._repeat.loop.name, frame.level, turn, change))
+        name = state.within + self._repeat.loop.name
+        state.record.turns.append(records.Turn(name, frame.level, turn, change))
         return change
 
     def _is_calm(self, change: float | None) -> bool:
@@ -77,7 +78,7 @@ class Turns:
         return "converged" if calm >= self._until.patience and self._repeat.change is not None else None
 
     def _stop(self, state: State, frame: Frame, turns: int, reason: records.Reason) -> None:
-        name = self._repeat.loop.name
+        name = state.within + self._repeat.loop.name
         state.record.stops.append(records.Stop(name, frame.level, turns, reason))
         state.tell(LoopEnded(name, frame.level, turns, reason))
         if reason != "exhausted":

@@ -26,7 +26,7 @@ class Options:
     stop_after
         The name of a node after which the run ends; loops around it run to their end.
     start
-        Fields of the map to start from, by name, at full size: a warm start.
+        Fields of the map to start from, by name, at full size: a warm start. ``<field>_confidence`` too.
     observers
         Callables that receive every event.
     cancel

@@ -34,8 +34,8 @@ def execute(schedule: Schedule, state: State, values: Mapping[str, Any], stop_af
     """
     for name, reader, slot in schedule.inputs:
         state.slots[slot] = read_as(values[name], reader)
-    run = _ready(schedule, bool(state.pools), stop_after)
-    run(state, Frame(0, size_of(schedule.graph, values)))
+    state.root = state.root._replace(size=size_of(schedule.graph, values))
+    _ready(schedule, bool(state.pools), stop_after)(state, state.root)
 
 
 def pools_for(block: Block) -> int:
@@ -64,14 +64,19 @@ def _item(schedule: Schedule, item: Item, pool: int | None) -> Run:
 
 
 def _sub_graph(node: Node) -> Invoke:
-    """A sub-graph is a call: it gets inputs, gives outputs, and keeps nothing between calls."""
+    """A sub-graph is a call: it gets inputs, gives outputs, and keeps nothing between calls.
+
+    Inside it is the level and the turn of the call, and the camera and the images are those that it is given.
+    """
     graph = node.callee.graph
     assert graph is not None
     schedule = compile_graph(graph)
 
-    def invoke(values: Values, context: Context, outer: State) -> Mapping[str, Any]:  # noqa: ARG001 - one form
+    def invoke(values: Values, context: Context, outer: State) -> Mapping[str, Any]:
         given = accept(graph, values)
-        inner = State([None] * schedule.slots, outer.seed, camera=camera_of(given), cancel=outer.cancel)
+        inner = State([None] * schedule.slots, context._seed, camera_of(given), cancel=outer.cancel)
+        inner.root = Frame(context.level, None, context._turns)
+        inner.within = f"{outer.within}{node.name}."
         inner.emit, inner.record = outer.emit, outer.record
         execute(schedule, inner, given)
         return {name: inner.slots[slot] for name, slot in schedule.outputs.items()}

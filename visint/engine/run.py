@@ -14,6 +14,7 @@ from visint.engine.one_thread import ONE_THREAD
 from visint.engine.options import Options
 from visint.engine.ready import execute, pools_for
 from visint.engine.state import State, emitter
+from visint.engine.warm import accept_start
 from visint.events import RunFinished, RunStarted
 from visint.fields.evidence import Evidence
 from visint.graph import Graph, load
@@ -61,9 +62,8 @@ def run(
     options = options or Options()
     values = accept(graph, {**(inputs or {}), **named})
     schedule = compile_graph(graph)
-    state = State(
-        [None] * schedule.slots, options.seed, camera_of(values), warm=options.start, cancel=options.cancel
-    )
+    state = State([None] * schedule.slots, (options.seed,), camera_of(values), cancel=options.cancel)
+    state.warm = accept_start(graph, options.start, size_of(graph, values))
     observers = [*options.observers, *(seen for plugin in graph.catalog.loaded for seen in plugin.observers())]
     state.emit = emitter(observers)
     started = perf_counter()
@@ -124,6 +124,6 @@ def _result(schedule: Schedule, state: State, values: Mapping[str, Any], seconds
         maps=maps,
         evidence=evidence,
         record=state.record,
-        seed=state.seed,
+        seed=state.seed[0],
         seconds=seconds,
     )

@@ -14,19 +14,26 @@ from visint.events import Event, Measured, Observer, Warned
 from visint.fields.camera import Camera
 from visint.results import records
 
-__all__ = ["State"]
+__all__ = ["BLIND_GUESS", "State", "emitter"]
+
+BLIND_GUESS = 0.1
+"""Disparity of the start plane as a share of the image width, where no search range is known."""
 
 
 @dataclass(slots=True)
 class State:
     """Everything a run changes while it goes on; nothing of it outlives the run but what the result takes.
 
-    ``emit`` is None where nobody listens, so that no event is ever made for nobody.
+    ``root`` is where the graph begins: in a sub-graph the level and the turns of the call, whose name and a
+    dot are ``within``. ``seed`` is the run's, with the keys of the calls around. ``emit`` is None where nobody
+    listens, so that no event is ever made for nobody.
     """
 
     slots: list[Any]
-    seed: int = 0
+    seed: tuple[int, ...] = (0,)
     camera: Camera | None = None
+    root: Frame = field(default_factory=Frame)
+    within: str = ""
     warm: Mapping[str, Any] = field(default_factory=dict)
     cancel: Flag = field(default_factory=Flag)
     pools: Sequence[ThreadPoolExecutor] = ()
@@ -39,9 +46,23 @@ class State:
         if self.cancel.is_set():
             raise Cancelled.of("VI130", "the run was interrupted")
 
+    def camera_at(self, level: int) -> Camera | None:
+        """The camera there, or one for relative depth where none was given; None without images.
+
+        Halved from full size either way: of odd sizes the focal length would not be half the width.
+        """
+        camera = self.camera
+        if camera is None and self.root.size is not None:
+            rows, columns = self.root.size
+            camera = Camera.uncalibrated(columns, rows, (0, 2 * BLIND_GUESS * columns))
+        if camera is not None:
+            for _ in range(level - self.root.level):
+                camera = camera.halved()
+        return camera
+
     def note(self, node: str, frame: Frame, what: str, name: str, value: Any) -> None:
         """Records what a module says through its context."""
-        place = (node, frame.level, frame.turn)
+        place = (self.within + node, frame.level, frame.turn)
         if what == "measure":
             self.record.measures.append(records.Measure(*place, name, value))
             self.tell(Measured(*place, name, value))

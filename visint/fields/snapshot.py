@@ -96,6 +96,10 @@ class MapSnapshot:
             _derived={},
         )
 
+    def seen_by(self, camera: Camera) -> MapSnapshot:
+        """The same map through another camera of its size: what is derived follows anew."""
+        return replace(self, camera=camera, _derived={})
+
     def finer(self, size: tuple[int, int], between: Mapping[str, Interpolation]) -> MapSnapshot:
         """The map one level finer, of ``size``; ``between`` says by kind how values are interpolated."""
         values = {

@@ -75,11 +75,19 @@ class Record:
             yield Timing(node, level, int(calls), seconds)
 
     def in_order(self, loops: Iterable[str], nodes: Iterable[str]) -> None:
-        """Sorts by loop and by node, keeping the order of time within each: threads may have mixed them."""
-        loop_rank = {name: i for i, name in enumerate(loops)}
-        rank = loop_rank | {name: i for i, name in enumerate(nodes)}
-        behind = len(loop_rank)  # loops of sub-graphs
-        self.turns.sort(key=lambda turn: loop_rank.get(turn.loop, behind))
-        self.stops.sort(key=lambda stop: loop_rank.get(stop.loop, behind))
-        self.warnings.sort(key=lambda warned: rank.get(warned.node, -1))
-        self.measures.sort(key=lambda measure: rank.get(measure.node, -1))
+        """Sorts by loop and by node, keeping the order of time within each: threads may have mixed them.
+
+        What happened in a sub-graph, ``call.node``, stands where its call does.
+        """
+        rank = {name: i for i, name in enumerate([*loops, *nodes])}
+
+        def place(name: str) -> int:
+            return rank.get(name.partition(".")[0], len(rank))
+
+        self.turns.sort(key=lambda turn: place(turn.loop))
+        self.stops.sort(key=lambda stop: place(stop.loop))
+        self.warnings.sort(key=lambda warned: place(warned.node))
+        self.measures.sort(key=lambda measure: place(measure.node))
+        seconds = sorted(self.seconds.items(), key=lambda each: place(each[0][0]))
+        self.seconds.clear()
+        self.seconds.update(seconds)
