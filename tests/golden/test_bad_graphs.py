@@ -63,15 +63,20 @@ def problems(case: str, catalog: Catalog) -> tuple[Problem, ...]:
     first = (BAD / f"{case}.yaml").read_bytes().partition(b"\n")[0].decode("utf-8", "replace")
     loads, alters = re.match(r"# load: (.*)", first), re.match(r"# alter: (\w+) (.*)", first)
     with pytest.raises(VisintError) as caught:
-        graph = load(loads[1] if loads else Path(f"{case}.yaml"), catalog)
-        if alters and alters[1] == "set":
-            key, _, value = alters[2].partition("=")
-            alter(graph, settings={key: value})
-        elif alters and alters[1] == "without":
-            alter(graph, without=[alters[2]])
-        elif alters:
-            alter(graph, control=alters[2])
+        _meet(Path(f"{case}.yaml"), loads and loads[1], alters and alters.groups(), catalog)
     return caught.value.problems
+
+
+def _meet(path: Path, name: str | None, change: tuple[str, str] | None, catalog: Catalog) -> None:
+    graph = load(name or path, catalog)
+    what, value = change or ("", "")
+    if what == "set":
+        key, _, new = value.partition("=")
+        alter(graph, settings={key: new})
+    elif what == "without":
+        alter(graph, without=[value])
+    elif what:
+        alter(graph, control=value)
 
 
 @pytest.fixture(scope="module")
@@ -112,7 +117,9 @@ def test_there_are_enough_cases():
 
 def test_every_problem_of_a_file_has_a_place(told):
     """File, line and column lead every problem of a file; variants made by hand have only names."""
-    files = [case for case in CASES if not (BAD / f"{case}.yaml").read_bytes().startswith((b"# load", b"# alter"))]
+    files = [
+        case for case in CASES if not (BAD / f"{case}.yaml").read_bytes().startswith((b"# load", b"# alter"))
+    ]
     lost = [str(problem) for case in files for problem in told[case] if not problem.where.line]
     assert not lost
 

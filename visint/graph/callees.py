@@ -31,7 +31,7 @@ def find_callee(draft: Draft, uses: str, where: Where) -> Callee | None:
         return _graph_callee(draft, prefix, name, where)
     module = ModuleId.parse(uses)
     if module is None:
-        found = f"{uses!r} is no module; one is written plugin.module"
+        found = f"{uses[:70]!r} is no module; one is written plugin.module"
         known = {each.partition(".")[2]: each for each in _known_modules(draft)}
         near = known.get(did_you_mean(uses.rpartition(".")[2].lower(), known) or "", "plugin.module")
         choices = "plugins: " + listed(draft.catalog.plugin_names)
@@ -76,9 +76,8 @@ def _graph_callee(draft: Draft, prefix: str, name: str, where: Where) -> Callee 
     if prefix != "graph" or not is_name(name) or name not in known:
         near = did_you_mean(name, known)
         write = f"uses: graph:{near or next(iter(known), 'name')}"
-        draft.say(
-            "VI201", f"{prefix}:{name} names no installed graph", where, "graphs: " + listed(known), write
-        )
+        found = f"{f'{prefix}:{name}'[:70]!r} names no installed graph"
+        draft.say("VI201", found, where, "graphs: " + listed(known), write)
         return None
     if name in draft.calling:
         circle = " → ".join([*draft.calling[draft.calling.index(name) :], name])

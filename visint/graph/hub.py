@@ -17,7 +17,7 @@ from visint.graph.graph import INPUTS, MAP
 from visint.graph.rewire import rewired
 from visint.graph.spec import FeedbackSpec, HubSpec, NodeSpec, SpokeSpec
 from visint.module import PortSpec
-from visint.names import did_you_mean, listed
+from visint.names import did_you_mean, is_name, listed
 
 __all__ = ["expand"]
 
@@ -49,7 +49,7 @@ def _check_order(draft: Draft, hub: HubSpec) -> None:
             near = did_you_mean(name, set(hub.spokes) - set(hub.order))
             right = [near if one == name else one for one in hub.order] if near else rest
             choices = "spokes: " + listed(hub.spokes)
-            draft.say("VI221", f"there is no spoke {name!r}", where, choices, _order(right))
+            draft.say("VI221", f"there is no spoke {name[:70]!r}", where, choices, _order(right))
         elif name in hub.order[:index]:
             found = f"the spoke {name!r} stands twice in the order"
             draft.say("VI212", found, where, write=_order([*dict.fromkeys(hub.order)]))
@@ -72,9 +72,11 @@ def _policy(draft: Draft, hub: HubSpec) -> Mapping[str, Mapping[str, Any]]:
     where = draft.where("hub", "uses")
     if plugin not in draft.catalog.plugin_names:
         near = did_you_mean(plugin, draft.catalog.plugin_names)
-        write = f"uses: {near}.{name}" if near else "pip install …   (the plugin that brings it)"
+        write = (
+            f"uses: {near}.{name}" if near and is_name(name) else "pip install …   (the plugin that brings it)"
+        )
         choices = "plugins: " + listed(draft.catalog.plugin_names)
-        draft.say("VI201", f"no plugin is named {plugin!r}", where, choices, write)
+        draft.say("VI201", f"no plugin is named {plugin[:70]!r}", where, choices, write)
         return {}
     found = draft.catalog.policy(hub.uses)
     if found is None:
@@ -82,7 +84,7 @@ def _policy(draft: Draft, hub: HubSpec) -> Mapping[str, Mapping[str, Any]]:
         near = did_you_mean(name, known) or next(iter(known), None)
         choices = f"policies of {plugin!r}: " + listed(f"{plugin}.{one}" for one in known)
         write = f"uses: {plugin}.{near}" if near else ""
-        draft.say("VI201", f"{plugin!r} has no hub policy {name!r}", where, choices, write)
+        draft.say("VI201", f"{plugin!r} has no hub policy {name[:70]!r}", where, choices, write)
     return found or {}
 
 

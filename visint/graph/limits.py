@@ -21,9 +21,15 @@ LONGEST_TEXT = 10_000
 """Characters of one text."""
 
 _UNPRINTABLE = re.compile("[^\t\n\r -~\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-_WORD = re.compile(r"[^\s,:]{1001}")
-_BLANK = re.compile(r"\s{2001}")
-_SPLITS = re.compile(r"[:,\[{]|(?:^|\s)[-?]\s")
+# Each is tried only where a run begins: else a file of long runs takes the square of its length.
+_WORD = re.compile(r"(?<![^\s,:])[^\s,:]{1001}")
+_BLANK = re.compile(r"(?<!\s)\s{2001}")
+_TEXT = re.compile(r"(?<![^:,\[\]{}\n])[^:,\[\]{}\n]{10001}")
+_RUNS = (
+    (_WORD, "a word of more than 1000 letters"),
+    (_BLANK, "a gap of more than 2000 blanks"),
+    (_TEXT, f"a text of more than {LONGEST_TEXT} letters"),
+)
 _BRACKET = re.compile(r"[\[\]{}]")
 
 
@@ -37,20 +43,19 @@ def refuse_monsters(text: str, file: str) -> None:
     """
     if len(text) > LARGEST:
         raise _beyond(file, text, 0, f"more than {LARGEST // 1024} kB")
+    if text.count("\n") > LONGEST:
+        raise _beyond(file, text, 0, f"more than {LONGEST} lines")
+    _refuse_depth(text, file)
+    if sum(map(text.count, (":", ",", "[", "{", "- ", "? "))) > 2 * LONGEST:
+        raise _beyond(file, text, 0, f"more than {LONGEST} values")
     odd = _UNPRINTABLE.search(text)
     if odd is not None:
         found = f"the character U+{ord(odd[0]):04X} has no place in a text file"
         raise GraphError(Problem("VI102", found, _spot(file, text, odd.start()), write="(the line without it)"))
-    _refuse_depth(text, file)
-    for pattern, what in (
-        (_WORD, "a word of more than 1000 letters"),
-        (_BLANK, "a gap of more than 2000 blanks"),
-    ):
+    for pattern, what in _RUNS:
         long = pattern.search(text)
         if long is not None:
             raise _beyond(file, text, long.start(), what, "(a shorter text)")
-    if text.count("\n") > LONGEST or sum(1 for _ in _SPLITS.finditer(text)) > 2 * LONGEST:
-        raise _beyond(file, text, 0, f"more than {LONGEST} values or lines")
 
 
 def _refuse_depth(text: str, file: str) -> None:

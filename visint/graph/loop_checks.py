@@ -7,10 +7,11 @@ from collections.abc import Iterator
 import networkx as nx
 
 from visint.errors import Problem
+from visint.fields.kinds import KINDS
 from visint.graph.draft import Draft
 from visint.graph.graph import MAP, Edge, Graph
 from visint.module import PortSpec
-from visint.names import did_you_mean, listed
+from visint.names import did_you_mean, is_name, listed
 
 __all__ = ["LOOP_RULES", "loops_exist"]
 
@@ -29,8 +30,12 @@ def loops_exist(graph: Graph, draft: Draft) -> Found:
         if loop is not None and loop not in graph.loops:
             where, choices = draft.where(*path), "loops: " + listed(graph.loops)
             near = did_you_mean(loop, graph.loops)
-            write = f"{path[-1]}: {near}" if near else f"loops: {{{loop}: {{times: 20}}}}"
-            yield Problem("VI208", f"there is no loop {loop!r}", where, choices, write)
+            write = (
+                f"{path[-1]}: {near}"
+                if near
+                else f"loops: {{{loop if is_name(loop) else 'sweeps'}: {{times: 20}}}}"
+            )
+            yield Problem("VI208", f"there is no loop {loop[:70]!r}", where, choices, write)
     inside = nx.DiGraph(
         (name, loop.spec.inside) for name, loop in graph.loops.items() if loop.spec.inside is not None
     )
@@ -58,6 +63,20 @@ def loops_are_bounded(graph: Graph, draft: Draft) -> Found:
                 found = f"a pyramid has no {key!r}" if loop.pyramid else f"only a pyramid has {key!r}"
                 write = f"sweeps: {{inside: {name}, times: 20}}" if loop.pyramid else "over: pyramid"
                 yield Problem("VI210", found, draft.where("loops", name, key, key=True), write=write)
+
+
+def between_names_kinds(graph: Graph, draft: Draft) -> Found:
+    """``between`` says how to go up for kinds of pixels that may be interpolated."""
+    able = [name for name, kind in KINDS.items() if kind.interpolated]
+    for name, loop in graph.loops.items():
+        for kind, how in loop.spec.between.items():
+            found = draft.catalog.kind(kind)
+            if found is None or not found.interpolated:
+                near = did_you_mean(kind, able) or "Depth"
+                said = f"there is no field kind {kind!r}" if found is None else f"{kind} is never interpolated"
+                where = draft.where("loops", name, "between", kind, key=True)
+                choices = "kinds that are: " + listed(able) + ", or plugin.Kind"
+                yield Problem("VI209", said, where, choices, f"between: {{{near}: {how}}}")
 
 
 def no_pyramid_in_a_pyramid(graph: Graph, draft: Draft) -> Found:
@@ -127,7 +146,9 @@ def restarts_are_outer_loops(graph: Graph, draft: Draft) -> Found:
         for port, feedback in node.feedback.items():
             outer = graph.loops_around(feedback.loop)[:-1]
             if feedback.restart is not None and feedback.restart not in outer:
-                found = f"{feedback.restart!r} is no loop around {feedback.loop!r}, where this value goes round"
+                found = (
+                    f"{feedback.restart[:70]!r} is not around {feedback.loop!r}, where this value goes round"
+                )
                 where = draft.where("nodes", name, "feedback", port, "restart")
                 write = f"restart: {outer[-1]}" if outer else f"{port}: {{…}}   (without 'restart')"
                 yield Problem("VI208", found, where, "loops around it: " + listed(outer), write)
@@ -154,6 +175,7 @@ def levels_lie_in_a_pyramid(graph: Graph, draft: Draft) -> Found:
 
 LOOP_RULES = (
     loops_are_bounded,
+    between_names_kinds,
     no_pyramid_in_a_pyramid,
     ends_are_sound,
     restarts_are_outer_loops,
