@@ -1,0 +1,11 @@
+"""Engines: this one, bare Python and other people's, on the same chain and the same loop.
+
+One file an engine, ``on_<name>.py``: it says how the chain and the loop are spelled there, and nothing else.
+Each runs in a fresh process, ``python on_dask.py``, and prints what :mod:`stopwatch` measured.
+"""
+
+from __future__ import annotations
+
+from visint_lab.engines.contest import OURS, PEERS, Heat, contest
+
+__all__ = ["OURS", "PEERS", "Heat", "contest"]
