@@ -70,8 +70,8 @@ def _pair(name: str, truth: Path | None, size: int) -> tuple[Pair, visint.Light 
 
 
 def _save(out: Path, text: str) -> None:
-    from visint.io import write_text
+    from visint.io import make_folder, write_text
 
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     write_text(out / "ablation.csv", text)
     print((out / "ablation.csv").resolve(), file=sys.stderr)

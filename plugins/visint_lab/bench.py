@@ -106,13 +106,13 @@ def _save(
     found: Sequence[Heat],
     plotted: tuple[Any, str],
 ) -> None:
-    from visint.io import write_text
+    from visint.io import make_folder, write_text
     from visint_lab.trials import page
     from visint_lab.trials.grid import as_csv
     from visint_lab.trials.plot import quality_and_time
 
     head, rows, note = grid
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     write_text(out / "bench.csv", as_csv(head, rows))
     keys = list(dict.fromkeys(key for heat in found for key in heat.scores))
     scenes = [[h.pair, h.entrant, *(f"{h.scores.get(k, float('nan')):.6g}" for k in keys)] for h in found]

@@ -100,9 +100,9 @@ def _pictures(result: RowResult) -> dict[str, Array]:
 
 
 def _save(out: Path, text: str, html: str) -> None:
-    from visint.io import write_text
+    from visint.io import make_folder, write_text
 
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     write_text(out / "table.csv", text)
     write_text(out / "table.html", html)
     print((out / "table.html").resolve(), file=sys.stderr)

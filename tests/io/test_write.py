@@ -32,6 +32,16 @@ def test_bytes_and_text_arrive(tmp_path):
     assert names(tmp_path) == ["a.bin", "b.txt"]
 
 
+def test_a_folder_is_made_with_its_parents(tmp_path):
+    """One that is there is fine; a file in the way is one line that names it."""
+    visint.io.make_folder(tmp_path / "a" / "b")
+    visint.io.make_folder(tmp_path / "a" / "b")
+    assert (tmp_path / "a" / "b").is_dir()
+    (tmp_path / "file").touch()
+    with pytest.raises(visint.OutputError, match="VI601 .*file"):
+        visint.io.make_folder(tmp_path / "file")
+
+
 def test_new_files_have_usual_permissions(tmp_path):
     """As the umask says, not a temporary file's 0600."""
     visint.io.write_bytes(tmp_path / "a", b"")

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from visint.io.resources import shipped_folder as shipped_folder
     from visint.io.text import read_json as read_json
     from visint.io.text import read_text as read_text
+    from visint.io.write import make_folder as make_folder
     from visint.io.write import write_bytes as write_bytes
     from visint.io.write import write_text as write_text
 
@@ -60,6 +61,7 @@ _HOME = {
     "is_run": "folder",
     "linear_from_srgb": "curves",
     "luminance": "curves",
+    "make_folder": "write",
     "read": "inputs",
     "read_bytes": "files",
     "read_camera": "calibration",

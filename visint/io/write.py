@@ -13,7 +13,7 @@ from pathlib import Path
 from visint.errors import OutputError
 from visint.io.files import shown
 
-__all__ = ["existing_ancestor", "sync_folder", "told", "write_bytes", "write_text"]
+__all__ = ["existing_ancestor", "make_folder", "sync_folder", "told", "write_bytes", "write_text"]
 
 _FULL = (errno.ENOSPC, errno.EDQUOT)
 _REASONS = {
@@ -53,6 +53,13 @@ def write_bytes(path: str | Path, data: bytes) -> None:
 def write_text(path: str | Path, text: str) -> None:
     """A UTF-8 text file, its line ends as in ``text``; as :func:`write_bytes`."""
     write_bytes(path, text.encode("utf-8"))
+
+
+def make_folder(path: str | Path) -> None:
+    """A folder, its parents where needed; one that is there is fine. OutputError VI601 where it cannot be."""
+    path = Path(path)
+    with told(path):
+        path.mkdir(parents=True, exist_ok=True)
 
 
 def _put(path: Path, data: bytes) -> None:

@@ -46,7 +46,7 @@ def _entries(distribution: Distribution, group: str) -> list[Entry]:
             return []
         about = distribution.metadata
         version = about["Version"] if "Version" in about else ""  # noqa: SIM401 - metadata have no get
-        name = about["Name"] if "Name" in about else "unknown"  # noqa: SIM401
+        name = about["Name"] if "Name" in about else "unknown"  # noqa: SIM401 - a message has no get that mypy knows
         return [Entry(point.name, point, name, version) for point in points]
     except (OSError, TypeError, ValueError, LookupError):
         return []
