@@ -17,8 +17,8 @@ WIDEST = 100.0
 TOO_WIDE = 5.0
 """A match of this sigma, px, rests on its neighbours alone: its reliability is halved."""
 
-WEIGHTS = np.array([-0.867, -0.691, -0.539], dtype=np.float32)
-BIAS = np.float32(2.57)
+WEIGHTS = np.array([-0.768, -0.665, -0.567], dtype=np.float32)
+BIAS = np.float32(2.496)
 """Fitted to errors below 1 px on rendered and real pairs; see the stereo page of the documentation."""
 
 
