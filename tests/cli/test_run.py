@@ -177,7 +177,9 @@ class TestOptions:
             assert visint("run", "stereo_sgm", *pair.all, "--out", "out", "--trace", name).code == 0
             events = json.loads((tmp_path / name).read_text())["traceEvents"]
             assert [(event["name"], event["ph"]) for event in events] == [("match", "X")]
-            assert all(isinstance(event[key], int | float) for event in events for key in ("ts", "dur", "pid", "tid"))
+            assert all(
+                isinstance(event[key], int | float) for event in events for key in ("ts", "dur", "pid", "tid")
+            )
 
     def test_stop_after(self, visint, pair, tmp_path):
         graph = {
@@ -247,7 +249,7 @@ class TestFolder:
     def test_another_persons_folder_is_refused_before_the_work(self, visint, pair, tmp_path, monkeypatch):
         (tmp_path / "mine").mkdir()
         (tmp_path / "mine" / "thesis.txt").write_text("years of work")
-        monkeypatch.setattr("visint.engine.run.run", None)
+        monkeypatch.setattr(package, "run", None, raising=False)
         monkeypatch.setattr("visint.engine.sources.read_sources", None)
         done = visint("run", "stereo_sgm", *pair.all, "--out", "mine")
         assert done.code == 5
@@ -278,7 +280,12 @@ class TestFolder:
 class TestAnyInput:
     """Inputs that are no files."""
 
-    GRAPH = "visint: 1\nname: sum\ninputs: {a: Scalar, b: Scalar?}\nnodes:\n  n: {uses: toy.noise, in: {value: inputs.a}}\noutputs: {n: n.value}\n"
+    GRAPH = """visint: 1
+name: sum
+inputs: {a: Scalar, b: Scalar?}
+nodes: {n: {uses: toy.noise, in: {value: inputs.a}}}
+outputs: {n: n.value}
+"""
 
     def test_numbers_by_in(self, visint, toys, tmp_path):
         (tmp_path / "sum.yaml").write_text(self.GRAPH)
@@ -310,7 +317,9 @@ class TestAnyInput:
         (tmp_path / "sum.yaml").write_text(text)
         for option, value in [("--light", "0,0,-2"), ("--in", "light=0,0,-2"), ("--light-at", "1,2,3")]:
             assert visint("run", "sum.yaml", "--in", "a=1", option, value, "--out", "out").code == 0
-            assert json.loads((tmp_path / "out/run.json").read_text())["inputs"]["light"]["text"].endswith(value[-5:])
+            assert json.loads((tmp_path / "out/run.json").read_text())["inputs"]["light"]["text"].endswith(
+                value[-5:]
+            )
 
 
 def test_python_gives_the_same_bytes(visint, pair, tmp_path, former, files):

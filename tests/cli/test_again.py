@@ -1,0 +1,127 @@
+"""Running again from ``run.json``: the same bytes, or a word about why not."""
+
+from __future__ import annotations
+
+import json
+import shutil
+
+import pytest
+
+import visint as package
+from visint import io
+
+CHANGES = {"profile.json", "report.html"}
+"""What tells the time, and nothing else."""
+
+
+@pytest.fixture
+def mine(former, tmp_path):
+    """A copy of a former run that may be spoilt."""
+    shutil.copytree(former, tmp_path / "former")
+    return tmp_path / "former"
+
+
+def spoil(folder, **changed):
+    record = json.loads((folder / "run.json").read_text())
+    (folder / "run.json").write_text(json.dumps(record | changed))
+
+
+def test_same_bytes(visint, former, tmp_path, files):
+    assert visint("run", former / "run.json", "--out", "again").code == 0
+    ours, theirs = files.contents(tmp_path / "again"), files.contents(former)
+    assert set(ours) == set(theirs)
+    assert {name for name in ours if ours[name] != theirs[name]} <= CHANGES
+
+
+def test_over_itself(visint, mine, files):
+    """A run may be done again in its own folder."""
+    before = files.contents(mine)
+    assert visint("run", mine / "run.json", "--out", mine).code == 0
+    after = files.contents(mine)
+    assert {name for name in after if after[name] != before[name]} <= CHANGES
+
+
+def test_settings_and_options_are_kept(visint, pair, tmp_path, files):
+    """What ``--set``, ``--gamma``, ``--seed`` and ``--disparity-range`` said is on record."""
+    options = ["--set", "match.tolerance=2", "--gamma", 2, "--seed", 3, "--disparity-range", "1,9"]
+    assert visint("run", "stereo_sgm", *pair.images, *options, "--out", "one").code == 0
+    assert visint("run", "one/run.json", "--out", "two").code == 0
+    one, two = files.contents(tmp_path / "one"), files.contents(tmp_path / "two")
+    assert {name for name in one if one[name] != two[name]} <= CHANGES
+
+
+def test_options_now_go_before_those_then(visint, former, pair, tmp_path):
+    options = ["--right", pair.left, "--seed", 9, "--set", "match.speckle=7"]
+    assert visint("run", former / "run.json", *options, "--out", "out").code == 0
+    record = json.loads((tmp_path / "out/run.json").read_text())
+    assert record["seed"] == 9
+    assert record["inputs"]["right"]["sha256"] == record["inputs"]["left"]["sha256"]
+    assert record["parameters"]["match"]["speckle"] == 7
+    assert not [warned for warned in record["warnings"] if warned["code"] == "changed"]
+
+
+def test_a_changed_file_is_told(visint, pair, tmp_path):
+    """The image was edited since: the run is done, and says which input is another one."""
+    for name in ("left.png", "right.png", "calib.txt"):
+        shutil.copy(pair.folder / name, tmp_path / name)
+    inputs = ["--left", "left.png", "--right", "right.png", "--calib", "calib.txt"]
+    assert visint("run", "stereo_sgm", *inputs, "--out", "one").err == ""
+    shutil.copy(tmp_path / "left.png", tmp_path / "right.png")
+    done = visint("run", "one/run.json", "--out", "two")
+    assert done.code == 0
+    assert "inputs.right" in done.err
+    assert "inputs.left" not in done.err
+
+
+class TestFromPython:
+    """A run on arrays left no paths on record."""
+
+    @pytest.fixture
+    def record(self, pair, tmp_path):
+        images = {"left": io.read_image(pair.left), "right": io.read_image(pair.right)}
+        package.run("stereo_sgm", images, camera=io.read_camera(pair.calib)).save(tmp_path / "python")
+        return tmp_path / "python" / "run.json"
+
+    def test_cannot_be_done_again_from_files(self, refused, record):
+        said = refused(3, "run", record, "--out", "again")
+        assert all(f"--in {name}=PATH" in said for name in ("left", "right", "camera"))
+
+    def test_can_where_the_files_are_given(self, visint, record, pair, tmp_path):
+        assert visint("run", record, *pair.all, "--out", "again").code == 0
+        assert (tmp_path / "again/depth.pfm").read_bytes() == (record.parent / "depth.pfm").read_bytes()
+
+
+class TestSpoilt:
+    """A run record is data from anywhere."""
+
+    @pytest.mark.parametrize(
+        "changed",
+        [
+            {"inputs": []},
+            {"inputs": {"left": "l.png"}},
+            {"inputs": {"left": {"paths": "l.png"}}},
+            {"inputs": {"left": {"paths": [1]}}},
+            {"inputs": {"left": {"paths": ["l.png"], "gamma": "high"}}},
+            {"seed": "x"},
+            {"seed": None},
+            {"graph": []},
+        ],
+    )
+    def test_no_record(self, refused, mine, changed):
+        spoil(mine, **changed)
+        assert "no run record" in refused(3, "run", mine / "run.json", "--out", "again")
+
+    def test_graph_in_it(self, refused, mine):
+        spoil(mine, graph={"visint": 1, "name": "x", "nodes": {"a": {"uses": "os.system"}}})
+        assert "VI" in refused(2, "run", mine / "run.json", "--out", "again")
+
+    @pytest.mark.parametrize("text", ["", "{", "[]", "1", '{"visint": "0.1"}', "\0\1"])
+    def test_text(self, refused, mine, text):
+        (mine / "run.json").write_text(text)
+        assert "run.json" in refused(3, "run", mine / "run.json", "--out", "again")
+
+    def test_files_gone(self, refused, mine):
+        record = json.loads((mine / "run.json").read_text())
+        record["inputs"]["left"]["paths"] = ["/no/such/left.png"]
+        spoil(mine, inputs=record["inputs"])
+        assert "/no/such/left.png" in refused(3, "run", mine / "run.json", "--out", "again")
