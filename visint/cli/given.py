@@ -39,10 +39,8 @@ class Given(NamedTuple):
         """
         found: dict[str, Source] = {}
         for name, source in self._named(graph):
-            paths, text, gamma = found.get(name, ((), "", None))
-            found[name] = source._replace(
-                paths=(*paths, *source.paths), text=source.text or text, gamma=source.gamma or gamma
-            )
+            before = found.get(name, source._replace(paths=(), text=""))
+            found[name] = source._replace(paths=(*before.paths, *source.paths), text=source.text or before.text)
         return found
 
     def _named(self, graph: Graph) -> Iterator[tuple[str, Source]]:

@@ -30,7 +30,9 @@ EXAMPLES = (
 
 def command(  # noqa: PLR0913, PLR0917 - the options of a command line are many, and typer reads them here
     graph: Annotated[str, typer.Argument(help="A graph file, a shipped graph, or a run.json.")],
-    out: Annotated[Path, typer.Option(help="The folder for the results: new, empty, or a former run.")],
+    out: Annotated[
+        Path, typer.Option(readable=False, help="The folder for the results: new, empty, or a former run.")
+    ],
     left: Annotated[str, typer.Option(help="The left (reference) image.")] = "",
     right: Annotated[str, typer.Option(help="The right image.")] = "",
     calib: Annotated[str, typer.Option(help="The calibration file (Middlebury calib.txt).")] = "",
