@@ -11,6 +11,9 @@ if TYPE_CHECKING:
 
 __all__ = ["remarks"]
 
+_UNSURE, _HARDLY = 0.3, 0.1
+"""A confidence that nobody should build upon, and the share of pixels above it that calls for a word."""
+
 
 def remarks(result: Result, said: Iterable[tuple[str, str]], changed: Iterable[str]) -> list[Warned]:
     """Warnings, to go before those of the modules.
@@ -24,7 +27,7 @@ def remarks(result: Result, said: Iterable[tuple[str, str]], changed: Iterable[s
     """
     from visint.results.records import Warned
 
-    told = [*_of_files(said, changed), *_of_camera(result)]
+    told = [*_of_files(said, changed), *_of_camera(result), *_of_confidence(result)]
     return [Warned(place, 0, 0, code, text) for place, code, text in told]
 
 
@@ -41,3 +44,11 @@ def _of_camera(result: Result) -> Iterator[tuple[str, str, str]]:
     if wanted and result.camera is None and "Disparity" in kinds and "Depth" not in kinds:
         text = "without a calibration neither depth nor normals follow; give --calib or --disparity-range"
         yield f"inputs.{wanted}", "no_camera", text
+
+
+def _of_confidence(result: Result) -> Iterator[tuple[str, str, str]]:
+    """An even or unmatched pair gives full maps all the same; who looks at them alone would not know."""
+    unsure = [name for name, sure in result.confidence.items() if (sure > _UNSURE).mean() < _HARDLY]
+    if unsure:
+        text = "hardly anything is known: confidence is low nearly everywhere; have the images texture, do they match?"
+        yield ", ".join(unsure), "unsure", text
