@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from threading import Event
 from typing import Any
 
+from visint.errors import UsageError
 from visint.events import Observer
 
 __all__ = ["Options"]
@@ -15,6 +16,8 @@ __all__ = ["Options"]
 @dataclass(frozen=True, slots=True)
 class Options:
     """Options of :func:`visint.run`.
+
+    Raises UsageError VI701 for a wrong number of threads.
 
     Parameters
     ----------
@@ -39,3 +42,8 @@ class Options:
     start: Mapping[str, Any] = field(default_factory=dict)
     observers: tuple[Observer, ...] = ()
     cancel: Event = field(default_factory=Event)
+
+    def __post_init__(self) -> None:
+        if type(self.threads) is not int or self.threads < 1:
+            found = f"threads is a whole number from 1 on; this is {self.threads!r}"
+            raise UsageError.of("VI701", found, write="threads=1")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
+from functools import lru_cache
 from os import PathLike
 from time import perf_counter
 from typing import Any
@@ -13,7 +14,7 @@ from visint.engine.inputs import accept, camera_of, size_of
 from visint.engine.one_thread import ONE_THREAD
 from visint.engine.options import Options
 from visint.engine.ready import execute, pools_for
-from visint.engine.state import State, emitter
+from visint.engine.state import Halt, State, emitter
 from visint.engine.warm import accept_start
 from visint.events import RunFinished, RunStarted
 from visint.fields.evidence import Evidence
@@ -62,28 +63,38 @@ def run(
     options = options or Options()
     values = accept(graph, {**(inputs or {}), **named})
     schedule = compile_graph(graph)
-    state = State([None] * schedule.slots, (options.seed,), camera_of(values), cancel=options.cancel)
-    state.warm = accept_start(graph, options.start, size_of(graph, values))
+    threaded = options.threads > 1
+    cancel = Halt(options.cancel) if threaded else options.cancel
+    state = State([None] * schedule.slots, (options.seed,), camera_of(values), cancel=cancel)
+    size = size_of(graph, values)
+    state.warm = accept_start(graph, options.start, size)
     observers = [*options.observers, *(seen for plugin in graph.catalog.loaded for seen in plugin.observers())]
-    state.emit = emitter(observers)
+    state.emit = emitter(observers, threaded=threaded)
     started = perf_counter()
-    names = tuple(step.node.name for step in schedule.root.steps())
-    state.tell(RunStarted(graph.name, names, _calls(schedule, size_of(graph, values))))
+    names = _names(schedule)
+    state.tell(RunStarted(graph.name, names, _calls(schedule, size)))
     finished = False
     try:
         with ONE_THREAD, ExitStack() as stack:
             state.pools = [
                 stack.enter_context(ThreadPoolExecutor(options.threads, f"visint-{depth}"))
-                for depth in range(pools_for(schedule.root) if options.threads > 1 else 0)
+                for depth in range(pools_for(schedule.root) if threaded else 0)
             ]
             execute(schedule, state, values, options.stop_after)
         finished = True
     finally:
         state.tell(RunFinished(graph.name, perf_counter() - started, failed=not finished))
-    state.record.in_order(graph.loops, names)
+    if options.threads > 1 or graph.loops:  # else the order of time is the order of the nodes
+        state.record.in_order(graph.loops, names)
     return _result(schedule, state, values, perf_counter() - started)
 
 
+@lru_cache(maxsize=32)
+def _names(schedule: Schedule) -> tuple[str, ...]:
+    return tuple(step.node.name for step in schedule.root.steps())
+
+
+@lru_cache(maxsize=32)
 def _calls(schedule: Schedule, size: tuple[int, int] | None) -> int:
     """The most calls of ``run`` that the schedule can make: what progress is measured against."""
     from visint.fields.resampling import levels_down_to

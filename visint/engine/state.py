@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from threading import Event as Flag
+from threading import Lock
 from typing import Any
 
 from visint.engine.frame import Frame
@@ -14,10 +15,22 @@ from visint.events import Event, Measured, Observer, Warned
 from visint.fields.camera import Camera
 from visint.results import records
 
-__all__ = ["BLIND_GUESS", "State", "emitter"]
+__all__ = ["BLIND_GUESS", "Halt", "State", "emitter"]
 
 BLIND_GUESS = 0.1
 """Disparity of the start plane as a share of the image width, where no search range is known."""
+
+
+class Halt(Flag):
+    """A flag of the run's own that stands for the caller's, too: setting it leaves the caller's as it is."""
+
+    def __init__(self, callers: Flag) -> None:
+        super().__init__()
+        self._callers = callers
+
+    def is_set(self) -> bool:
+        """Whether either is set."""
+        return super().is_set() or self._callers.is_set()
 
 
 @dataclass(slots=True)
@@ -76,15 +89,17 @@ class State:
             self.emit(event)
 
 
-def emitter(observers: Sequence[Observer]) -> Callable[[Event], None] | None:
-    """One callable for all observers; None for none."""
+def emitter(observers: Sequence[Observer], *, threaded: bool = False) -> Callable[[Event], None] | None:
+    """One callable for all observers, one event at a time whatever runs side by side; None for none."""
     if not observers:
         return None
-    if len(observers) == 1:
+    if len(observers) == 1 and not threaded:
         return observers[0]
+    lock = Lock()
 
     def emit(event: Event) -> None:
-        for observer in observers:
-            observer(event)
+        with lock:
+            for observer in observers:
+                observer(event)
 
     return emit
