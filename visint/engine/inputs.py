@@ -87,7 +87,7 @@ def accept_value(name: str, kind: str, array: ArraySpec | None, value: Any) -> A
 def _exact(value: Any, dtype: str) -> Any:
     """Other floats become the declared one; integers do not, for nobody knows their scale."""
     both_float = value.dtype.kind == "f" and np.dtype(dtype).kind == "f"
-    return value.astype(dtype) if both_float else value
+    return value.astype(dtype, copy=False) if both_float else value
 
 
 def _hint(value: Any, array: ArraySpec) -> str:

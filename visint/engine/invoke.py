@@ -7,6 +7,8 @@ from functools import lru_cache
 from operator import itemgetter
 from typing import Any, NamedTuple
 
+from pydantic import BaseModel
+
 from visint.engine.state import State
 from visint.errors import ModuleError
 from visint.module import Context, Params, Ports, PortSpec
@@ -17,7 +19,10 @@ __all__ = ["Invoke", "Values", "invoke_module"]
 Values = dict[str, Any]
 Invoke = Callable[[Values, Context, State], Any]
 Check = Callable[[Values, Mapping[str, Any]], None]
-_set = object.__setattr__
+_set_values, _set_fields, _set_extra, _set_private = (
+    BaseModel.__dict__[slot].__set__
+    for slot in ("__dict__", "__pydantic_fields_set__", "__pydantic_extra__", "__pydantic_private__")
+)
 
 
 def invoke_module(module: type[AnyModule], params: Any) -> Invoke:
@@ -38,10 +43,10 @@ def invoke_module(module: type[AnyModule], params: Any) -> Invoke:
         except ValueError as error:
             raise ModuleError.of("VI402", f"its inputs do not fit each other: {error}") from None
         inputs = new(inputs_type)
-        _set(inputs, "__dict__", values)
-        _set(inputs, "__pydantic_fields_set__", fields)
-        _set(inputs, "__pydantic_extra__", None)
-        _set(inputs, "__pydantic_private__", None)
+        _set_values(inputs, values)
+        _set_fields(inputs, fields)
+        _set_extra(inputs, None)
+        _set_private(inputs, None)
         outputs = run(inputs, context)
         if type(outputs) is not outputs_type:
             raise ModuleError.of("VI402", _no_outputs(outputs, outputs_type))

@@ -11,7 +11,7 @@ from typing import Any
 
 __all__ = ["ONE_THREAD"]
 
-_VARIABLES = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS")
+_VARIABLES = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "OPENCV_FOR_THREADS_NUM")
 
 
 class _OneThread:
@@ -35,7 +35,8 @@ class _OneThread:
             self._runs += 1
             if self._runs == 1:
                 self._variables = {name: os.environ.get(name) for name in _VARIABLES}
-                os.environ.update(dict.fromkeys(_VARIABLES, "1"))
+                for name in _VARIABLES:
+                    os.putenv(name, "1")  # what a library sees; Python's own view of it stays
                 self._limits = self._found().limit(limits=1, user_api="blas")
 
     def __exit__(
@@ -47,9 +48,9 @@ class _OneThread:
                 self._limits.restore_original_limits()
                 for name, value in self._variables.items():
                     if value is None:
-                        os.environ.pop(name, None)
+                        os.unsetenv(name)
                     else:
-                        os.environ[name] = value
+                        os.putenv(name, value)
 
     def _found(self) -> Any:
         from threadpoolctl import ThreadpoolController
