@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import inspect
 import json
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping
+from textwrap import indent
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from visint.errors import PluginError, UsageError
-from visint.names import ModuleId, did_you_mean
+from visint.errors import PluginError, UsageError, VisintError
+from visint.names import ModuleId, did_you_mean, listed
 
 if TYPE_CHECKING:
     from visint.registry import Catalog
@@ -19,20 +21,22 @@ __all__ = ["EXAMPLES", "command"]
 
 EXAMPLES = "Examples: visint modules;  visint modules stereo.sgm;  visint modules stereo.sgm --json"
 
+_PARTS = ("inputs", "outputs", "parameters")
+
 
 def command(
-    module: Annotated[str, typer.Argument(help="A module's id, such as stereo.sgm.")] = "",
+    module: Annotated[str, typer.Argument(help="A module's id, such as stereo.sgm, or a plugin's name.")] = "",
     as_json: Annotated[bool, typer.Option("--json", help="As JSON on stdout.")] = False,
 ) -> None:
     """List the installed plugins and their modules, or tell what one module takes and gives."""
     from visint.registry import installed
 
     catalog = installed()
-    if module:
+    if module and module not in catalog.plugin_names:
         told = _describe(catalog, module)
         typer.echo(json.dumps(told, indent=1) if as_json else _page(told))
         return
-    plugins = [_plugin(catalog, name) for name in catalog.plugin_names]
+    plugins = [_plugin(catalog, name) for name in catalog.plugin_names if module in ("", name)]
     typer.echo(json.dumps(plugins, indent=1) if as_json else "\n".join(_lines(plugins)))
     if any("broken" in plugin for plugin in plugins):
         raise typer.Exit(PluginError.exit_code)
@@ -63,14 +67,11 @@ def _summary(module: type) -> str:
 
 def _describe(catalog: Catalog, name: str) -> dict[str, Any]:
     module_id = ModuleId.parse(name)
-    if module_id is None:
-        raise UsageError.of("VI701", f"{name!r} is no module id", write="visint modules stereo.sgm")
-    module = catalog.module(module_id)
+    module = None
+    if module_id is not None and module_id.plugin in catalog.plugin_names:
+        module = catalog.module(module_id)
     if module is None:
-        known = [f"{module_id.plugin}.{one}" for one in catalog.plugin(module_id.plugin).modules]
-        near = did_you_mean(name, known)
-        choices = "modules: " + ", ".join(known)
-        raise UsageError.of("VI201", f"no module is named {name!r}", choices=choices, write=near or "")
+        raise _unknown(catalog, name)
     schema = module.Params.model_json_schema()["properties"] if module.Params.model_fields else {}
     return {
         "module": name,
@@ -79,15 +80,38 @@ def _describe(catalog: Catalog, name: str) -> dict[str, Any]:
         "inputs": {port: str(spec) for port, spec in module.Inputs.specs.items()},
         "outputs": {port: str(spec) for port, spec in module.Outputs.specs.items()},
         "parameters": schema,
+        "notes": {
+            part: inspect.getdoc(model) or ""
+            for part, model in zip(_PARTS, (module.Inputs, module.Outputs, module.Params), strict=True)
+            if model.__module__ != "visint.module" and "__doc__" in vars(model)
+        },
     }
+
+
+def _unknown(catalog: Catalog, name: str) -> VisintError:
+    """Every module that there is, broken plugins' apart, and the one that was meant."""
+    plugins = [_plugin(catalog, plugin) for plugin in catalog.plugin_names]
+    known = [one for plugin in plugins for one in plugin.get("modules", ())]
+    near = did_you_mean(name, [*known, *catalog.plugin_names])
+    write = f"visint modules {near}" if near else ""
+    return UsageError.of(
+        "VI201", f"no module is named {name!r}", choices="modules: " + listed(known), write=write
+    )
 
 
 def _page(told: dict[str, Any]) -> str:
     lines = [f"{told['module']} (version {told['version']})", "", told["about"], ""]
-    for part in ("inputs", "outputs"):
-        lines += [f"{part}:", *(f"  {name}: {spec}" for name, spec in told[part].items())]
-    lines.append("parameters:")
-    for name, schema in told["parameters"].items():
-        about = " ".join(str(schema.get("description", "")).split())
-        lines.append(f"  {name} = {schema.get('default')!r}" + (f"   {about}" if about else ""))
-    return "\n".join(lines)
+    for part in _PARTS:
+        lines.append(f"{part}:")
+        if part == "parameters":
+            lines += [_parameter(name, schema) for name, schema in told[part].items()]
+        else:
+            lines += [f"  {name}: {spec}" for name, spec in told[part].items()]
+        lines += ["", indent(told["notes"].get(part, ""), "    "), ""]
+    return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).rstrip()
+
+
+def _parameter(name: str, schema: Mapping[str, Any]) -> str:
+    about = " ".join(str(schema.get("description", "")).split())
+    default = f" = {json.dumps(schema['default'])}" if "default" in schema else ""
+    return f"  {name}{default}" + (f"   {about}" if about else "")

@@ -50,5 +50,5 @@ def _of_confidence(result: Result) -> Iterator[tuple[str, str, str]]:
     """An even or unmatched pair gives full maps all the same; who looks at them alone would not know."""
     unsure = [name for name, sure in result.confidence.items() if (sure > _UNSURE).mean() < _HARDLY]
     if unsure:
-        text = "hardly anything is known: confidence is low nearly everywhere; have the images texture, do they match?"
+        text = "hardly anything is known: confidence is low nearly everywhere (no texture, or no match?)"
         yield ", ".join(unsure), "unsure", text
