@@ -6,7 +6,7 @@ import numpy as np
 
 from visint.arrays import Array
 
-__all__ = ["from_behind"]
+__all__ = ["evened", "from_behind"]
 
 
 def from_behind(disparity: Array, trusted: Array) -> Array:
@@ -22,3 +22,13 @@ def from_behind(disparity: Array, trusted: Array) -> Array:
     nearest = [np.take_along_axis(padded, where + 1, axis=1) for where in (before, after)]
     smaller = np.minimum(*nearest)
     return np.where(trusted, disparity, np.where(np.isfinite(smaller), smaller, np.nan)).astype(np.float32)
+
+
+def evened(disparity: Array) -> Array:
+    """``disparity`` by a median of 5×5: rows filled one by one no longer fray. NaN stays NaN."""
+    import cv2
+
+    known = np.isfinite(disparity)
+    smooth = cv2.medianBlur(np.where(known, disparity, np.float32(0)), 5)
+    whole = cv2.erode(known.astype(np.uint8), np.ones((5, 5), np.uint8)) > 0
+    return np.where(whole, smooth, disparity)

@@ -9,7 +9,7 @@ import numpy as np
 from visint.arrays import Array
 from visint_stereo.semiglobal.brightness import graded
 from visint_stereo.semiglobal.consistency import agreed, occluded, without_speckles
-from visint_stereo.semiglobal.fill import from_behind
+from visint_stereo.semiglobal.fill import evened, from_behind
 from visint_stereo.semiglobal.refine import refined
 from visint_stereo.semiglobal.reliability import TrainedOn, contrast, reliability, signs
 from visint_stereo.semiglobal.volume import (
@@ -62,7 +62,7 @@ def matched(left: Array, right: Array, levels: Levels, settings: Settings, check
     trusted = without_speckles(won.disparity, trusted, settings.speckle)
     views = (here.astype(np.float32) / 16, there.astype(np.float32) / 16)
     fine, sigma = refined(won.disparity, trusted, views, levels)
-    disparity = from_behind(fine, trusted)
+    disparity = evened(from_behind(fine, trusted))
     trust = reliability(signs(here, won, trusted, np.nan_to_num(disparity)), settings.trained_on)
     return Match(
         disparity,
