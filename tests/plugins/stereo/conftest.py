@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from visint.arrays import Array
+from visint.io import read, read_image, read_raster
 
 
 @dataclass(frozen=True)
@@ -45,29 +46,10 @@ def _data() -> Path:
     return Path(os.environ.get("VISINT_DATA", root / "../shared/data"))
 
 
-def _linear(path: Path) -> Array:
-    import cv2
-
-    grades = cv2.imread(str(path))[..., ::-1] / 255.0
-    linear = np.where(grades <= 0.04045, grades / 12.92, ((grades + 0.055) / 1.055) ** 2.4)
-    return np.ascontiguousarray(linear @ [0.2126, 0.7152, 0.0722], dtype=np.float32)
-
-
-def _pfm(path: Path) -> Array:
-    with path.open("rb") as file:
-        file.readline()
-        columns, rows = map(int, file.readline().split())
-        order = "<f4" if float(file.readline()) < 0 else ">f4"
-        values = np.frombuffer(file.read(), order).reshape(rows, columns)[::-1].astype(np.float32)
-    return np.where(np.isfinite(values), values, np.nan)
-
-
 def _truth(folder: Path) -> Array:
-    import cv2
-
     if (folder / "disp_left.pfm").exists():
-        return _pfm(folder / "disp_left.pfm")
-    grades = cv2.imread(str(folder / "disp_left.png"), cv2.IMREAD_GRAYSCALE).astype(np.float32)
+        return read(folder / "disp_left.pfm", "Disparity")
+    grades = read_raster(folder / "disp_left.png").grey.astype(np.float32)
     scale = {"mb2003": 4, "mb2005": 3, "mb2006": 3}[folder.parent.name]
     return np.where(grades > 0, grades / scale, np.nan)
 
@@ -82,7 +64,7 @@ def real_pair() -> Callable[[str], Pair]:
             pytest.skip(f"{scene} is not among the data; set VISINT_DATA")
         truth = _truth(folder).astype(np.float32)
         levels = -(-int(np.nanmax(truth) + 2) // 16) * 16
-        return Pair(_linear(folder / "left.png"), _linear(folder / "right.png"), truth, levels)
+        return Pair(read_image(folder / "left.png"), read_image(folder / "right.png"), truth, levels)
 
     return load
 
