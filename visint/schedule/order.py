@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Mapping
 from hashlib import blake2b
 from typing import Any
@@ -10,6 +11,7 @@ import networkx as nx
 from pydantic import BaseModel
 
 from visint.graph.graph import INPUTS, Edge, Feedback, Graph, Node
+from visint.graph.spec import LoopSpec
 
 __all__ = ["effective_loops", "structural_keys", "wires"]
 
@@ -52,7 +54,7 @@ def _key(graph: Graph, node: Node, keys: Mapping[str, int], known: Mapping[str, 
         _params(node.params),
         *(f"{level}{_params(params)}" for level, params in sorted(node.at.items())),
         repr(node.levels),
-        repr([graph.loops[loop].spec for loop in graph.loops_around(node.loop)]),
+        *(_loop(graph.loops[loop].spec) for loop in graph.loops_around(node.loop)),
     ]
     for port, edges in sorted(node.ins.items()):
         sources = (edges,) if isinstance(edges, Edge) else edges
@@ -60,6 +62,12 @@ def _key(graph: Graph, node: Node, keys: Mapping[str, int], known: Mapping[str, 
     for port, feedback in sorted(node.feedback.items()):
         text.append(f"{port}@{_fed_back(feedback, known, keys)}")
     return int.from_bytes(blake2b("\n".join(text).encode(), digest_size=8).digest(), "big")
+
+
+def _loop(spec: LoopSpec) -> str:
+    """A loop without the names in it: those of the loop around it and of what it watches."""
+    nameless = {"inside": True, "until": {"change_of", "holds"}}
+    return json.dumps(spec.model_dump(exclude=nameless), sort_keys=True)
 
 
 def _params(params: Any) -> str:
