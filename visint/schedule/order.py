@@ -66,8 +66,8 @@ def _key(graph: Graph, node: Node, keys: Mapping[str, int], known: Mapping[str, 
 
 def _loop(spec: LoopSpec) -> str:
     """A loop without the names in it: those of the loop around it and of what it watches."""
-    nameless = {"inside": True, "until": {"change_of", "holds"}}
-    return json.dumps(spec.model_dump(exclude=nameless), sort_keys=True)
+    nameless = spec.model_dump(exclude={"inside": True, "until": {"change_of": True, "holds": True}})
+    return json.dumps(nameless, sort_keys=True)
 
 
 def _params(params: Any) -> str:
