@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import threading
+from collections import defaultdict
 from typing import Any, NamedTuple
 
 from visint.events import Event, NodeFinished
 
-__all__ = ["Profile", "Row"]
+__all__ = ["Line", "Profile", "Row"]
 
 
 class Row(NamedTuple):
@@ -21,6 +22,16 @@ class Row(NamedTuple):
     thread: int
 
 
+class Line(NamedTuple):
+    """All calls of a node at a level: how many, how long together, and the longest of them."""
+
+    node: str
+    level: int
+    calls: int
+    seconds: float
+    longest: float
+
+
 class Profile:
     """Give it to a run as an observer; afterwards :attr:`rows` holds every call in order."""
 
@@ -31,6 +42,14 @@ class Profile:
         """Takes note of finished nodes."""
         if isinstance(event, NodeFinished):
             self.rows.append(Row(*event[:5], threading.get_ident()))
+
+    def table(self) -> list[Line]:
+        """One line a node and level, the dearest first."""
+        seconds: dict[tuple[str, int], list[float]] = defaultdict(list)
+        for row in self.rows:
+            seconds[row.node, row.level].append(row.seconds)
+        lines = [Line(*place, len(each), sum(each), max(each)) for place, each in seconds.items()]
+        return sorted(lines, key=lambda line: line.seconds, reverse=True)
 
     def chrome(self) -> dict[str, Any]:
         """The timeline in Chrome's trace-event format, times in microseconds; open it in ``chrome://tracing``."""
