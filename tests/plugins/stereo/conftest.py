@@ -46,12 +46,21 @@ def _data() -> Path:
     return Path(os.environ.get("VISINT_DATA", root / "../shared/data"))
 
 
+SCALES = {"mb2001": 8, "mb2003": 4, "mb2005": 3, "mb2006": 3}
+"""Grades to a pixel of 8-bit truth; 0 is unknown. Tsukuba has 16."""
+
+
 def _truth(folder: Path) -> Array:
-    if (folder / "disp_left.pfm").exists():
-        return read(folder / "disp_left.pfm", "Disparity")
-    grades = read_raster(folder / "disp_left.png").grey.astype(np.float32)
-    scale = {"mb2003": 4, "mb2005": 3, "mb2006": 3}[folder.parent.name]
+    file = next(folder.glob("disp_left.*"))
+    if file.suffix == ".pfm":
+        return read(file, "Disparity")
+    grades = read_raster(file).grey.astype(np.float32)
+    scale = 16 if folder.name == "tsukuba" else SCALES[folder.parent.name]
     return np.where(grades > 0, grades / scale, np.nan)
+
+
+def _view(folder: Path, side: str) -> Array:
+    return read_image(next(file for file in folder.glob(f"{side}.*")))
 
 
 @pytest.fixture(scope="session")
@@ -64,9 +73,16 @@ def real_pair() -> Callable[[str], Pair]:
             pytest.skip(f"{scene} is not among the data; set VISINT_DATA")
         truth = _truth(folder).astype(np.float32)
         levels = -(-int(np.nanmax(truth) + 2) // 16) * 16
-        return Pair(read_image(folder / "left.png"), read_image(folder / "right.png"), truth, levels)
+        return Pair(_view(folder, "left"), _view(folder, "right"), truth, levels)
 
     return load
+
+
+@pytest.fixture(scope="session")
+def public_scenes() -> list[str]:
+    """All "collection/scene" of the data; skips where there are none."""
+    scenes = sorted(f"{f.parent.name}/{f.name}" for f in _data().glob("mb*/*") if f.is_dir())
+    return scenes or pytest.skip("no public pairs; set VISINT_DATA")
 
 
 @pytest.fixture(scope="session")
