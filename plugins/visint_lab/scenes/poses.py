@@ -33,12 +33,12 @@ CHOSEN = {
 
 
 def random_pose(name: str, seed: int) -> Pose:
-    """A pose of object ``name`` drawn from ``seed``: uniform over rotations, size 0.75 to 1.1.
+    """A pose of object ``name`` drawn from ``seed``: uniform over rotations, size 0.7 to 1.
 
     A paraboloid keeps its bowl's outside in view: its axis stays within 50° of the line of sight.
     """
     rng = np.random.default_rng((seed, *name.encode()))
-    scale = float(rng.uniform(0.75, 1.1))
+    scale = float(rng.uniform(0.7, 1.0))
     if name == "paraboloid":
         tilt, way = math.radians(50) * math.sqrt(rng.uniform()), rng.uniform(0, 2 * math.pi)
         return Pose(turned(tilt * math.cos(way), tilt * math.sin(way), rng.uniform(0, 2 * math.pi)), scale)

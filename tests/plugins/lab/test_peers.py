@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 import visint
-from visint_lab.datasets.pair import Pair
+from visint_lab.datasets import REAL, Pair, data_folder, pairs_in
 from visint_lab.metrics import disparity_scores, filled_from_rows
 from visint_lab.peers import available, child, run_peer
 from visint_lab.peers.running import stored
 from visint_lab.render.rendering import render
 from visint_lab.scenes import scene
+from visint_lab.trials.contest import entrants, heats, standings
 
 
 def installed():
@@ -69,3 +70,18 @@ def test_a_flat_image_has_low_texture_and_noise_has_not():
     low = Pair("x", image, image, visint.Camera.uncalibrated(80, 40)).low_texture
     assert low[:, :34].all()
     assert not low[:, 46:].any()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not installed(), reason="make peers has not been run")
+def test_on_the_real_pairs_the_peers_come_in_the_known_order():
+    """Mean bad-2.0 over 26 pairs: Pandora best, then SGBM HH, 3WAY and StereoBM, each near its known figure."""
+    known = {"Pandora": 0.111, "SGBM HH": 0.134, "SGBM 3WAY": 0.142, "StereoBM": 0.154}  # of 49 pairs
+    try:
+        pairs = [(files.read(), None) for part in REAL for files in pairs_in(data_folder(part))]
+    except visint.InputError:
+        pytest.skip("the real pairs are not there")
+    run = list(heats(pairs, entrants([], list(known), floor=False)))
+    found = {one.entrant: one.means["bad2"] for one in standings(run, "bad2")}
+    assert sorted(found, key=found.__getitem__) == list(known)
+    assert found == pytest.approx(known, abs=0.02)

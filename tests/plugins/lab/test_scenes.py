@@ -48,6 +48,17 @@ def test_seeds_give_other_poses_of_the_same_object():
     assert not np.array_equal(one, chosen)
 
 
+@pytest.mark.parametrize(
+    "name", [n for n in names() if "+" not in n and "mozart" not in n and "range" not in n]
+)
+def test_random_poses_stay_in_view(name):
+    """Whatever the seed, the object leaves the border of the left image free."""
+    for seed in range(4):
+        seen = render(scene(name, 32, seed), samples=1).truth.foreground
+        assert not seen[[0, -1]].any()
+        assert not seen[:, [0, -1]].any()
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_a_paraboloid_keeps_its_apex_in_view(seed):
     """Its axis stays within 50° of the line of sight, so its mantle is what is seen."""
