@@ -61,11 +61,10 @@ def _no_size(port: PortSpec) -> InputError:
 
 def carry(state: State, cells: Iterable[Cell], level: int) -> None:
     """At the end of a turn: every cell gets what its source holds, all at once."""
-    cells = tuple(cells)
-    values = [state.slots[cell.source] for cell in cells]
-    for cell, value in zip(cells, values, strict=True):
-        state.slots[cell.slot] = value
-        state.begun[cell.slot] = level
+    slots, begun = state.slots, state.begun
+    for slot, value in [(cell.slot, slots[cell.source]) for cell in cells]:
+        slots[slot] = value
+        begun[slot] = level
 
 
 def to_level(

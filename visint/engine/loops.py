@@ -39,10 +39,10 @@ class Turns:
         calm = 0
         reason: records.Reason = "exhausted" if self._until else "times"
         turn = 0
+        begin(state, self._repeat.cells, frame)
         for turn in range(self._times):
-            for slot in self._restarts:
+            for slot in self._restarts:  # of loops inside: none of them is one of this loop's cells
                 state.begun.pop(slot, None)
-            begin(state, self._repeat.cells, frame)
             self._body(state, Frame(frame.level, frame.size, (*frame.turns, turn)))
             carry(state, self._repeat.cells, frame.level)
             change = self._change(state, frame, turn, before)

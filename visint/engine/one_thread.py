@@ -26,8 +26,8 @@ class _OneThread:
         self._lock = Lock()
         self._runs = 0
         self._imported = 0
-        self._controller: Any = None
-        self._limits: Any = None
+        self._libraries: list[Any] = []
+        self._threads: list[int] = []
         self._variables: Mapping[str, str | None] = {}
 
     def __enter__(self) -> None:
@@ -37,7 +37,10 @@ class _OneThread:
                 self._variables = {name: os.environ.get(name) for name in _VARIABLES}
                 for name in _VARIABLES:
                     os.putenv(name, "1")  # what a library sees; Python's own view of it stays
-                self._limits = self._found().limit(limits=1, user_api="blas")
+                self._look()
+                self._threads = [library.get_num_threads() for library in self._libraries]
+                for library in self._libraries:
+                    library.set_num_threads(1)
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
@@ -45,20 +48,20 @@ class _OneThread:
         with self._lock:
             self._runs -= 1
             if self._runs == 0:
-                self._limits.restore_original_limits()
+                for library, threads in zip(self._libraries, self._threads, strict=True):
+                    library.set_num_threads(threads)
                 for name, value in self._variables.items():
                     if value is None:
                         os.unsetenv(name)
                     else:
                         os.putenv(name, value)
 
-    def _found(self) -> Any:
+    def _look(self) -> None:
         from threadpoolctl import ThreadpoolController
 
-        if self._controller is None or self._imported != len(sys.modules):
-            self._controller = ThreadpoolController()
+        if self._imported != len(sys.modules):
+            self._libraries = ThreadpoolController().select(user_api="blas").lib_controllers
             self._imported = len(sys.modules)
-        return self._controller
 
 
 ONE_THREAD = _OneThread()
