@@ -31,8 +31,15 @@ def command(
     if as_json:
         typer.echo("[]")
     else:
-        loops = f", {len(bound.loops)} loops" if bound.loops else ""
-        typer.echo(f"{bound.name}: {len(bound.nodes)} nodes{loops}, outputs {', '.join(bound.outputs)}: sound")
+        parts = [
+            _counted(len(bound.nodes), "node"),
+            *([_counted(len(bound.loops), "loop")] if bound.loops else []),
+        ]
+        typer.echo(f"{bound.name}: {', '.join(parts)}, outputs {', '.join(bound.outputs)}: sound")
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 
 def _problems(error: VisintError) -> list[dict[str, object]]:
