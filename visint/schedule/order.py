@@ -13,7 +13,7 @@ from pydantic import BaseModel
 from visint.graph.graph import INPUTS, Edge, Feedback, Graph, Node
 from visint.graph.spec import LoopSpec
 
-__all__ = ["effective_loops", "structural_keys", "wires"]
+__all__ = ["effective_loops", "structural_keys", "waits", "wires"]
 
 
 def wires(graph: Graph) -> nx.DiGraph:
@@ -99,6 +99,27 @@ def effective_loops(graph: Graph, order: Iterable[str]) -> Mapping[str, str | No
             loop = graph.loops[loop].spec.inside
         loops[name] = loop
     return loops
+
+
+def waits(graph: Graph, joined: nx.DiGraph, loops: Mapping[str, str | None]) -> nx.DiGraph:
+    """``joined``, and what a loop waits for besides: nodes lifted out of it that it reads after each turn.
+
+    Those are the sources of values that go round in it, and what its end condition looks at.
+    """
+    edges = [
+        (feedback.edge.source.node, name, feedback.loop)
+        for name, node in graph.nodes.items()
+        for feedback in node.feedback.values()
+    ]
+    for loop in graph.loops.values():
+        inner = next((name for name, one in loops.items() if loop.name in graph.loops_around(one)), None)
+        watched = (loop.until.change_of, loop.until.holds) if loop.until and inner else ()
+        edges += [(edge.source.node, inner, loop.name) for edge in watched if edge and inner]
+    waiting = joined.copy()
+    waiting.add_edges_from(
+        (source, name) for source, name, loop in edges if loop not in graph.loops_around(loops[source])
+    )
+    return waiting
 
 
 def _held(graph: Graph, node: Node, loop: str, loops: Mapping[str, str | None]) -> bool:
