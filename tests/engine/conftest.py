@@ -10,6 +10,8 @@ from visint.engine import Options, run
 from visint.events import NodeStarted
 from visint.fields import Camera
 from visint.graph import Graph, parse_graph
+from visint.graph.bind import bind
+from visint.graph.spec import GraphSpec
 from visint.hookspecs import hookimpl
 from visint.registry import Catalog
 
@@ -42,6 +44,7 @@ class Stage:
         self._folder = folder
         self._graphs = {}
         self._plugins = {"toy": visint.testing.plugin}
+        self._catalog = Catalog(self._plugins, self._graphs)
         self.calls = []
         self.events = []
 
@@ -62,6 +65,10 @@ class Stage:
             return text
         head = "" if "visint: 1" in text else "visint: 1\nname: staged\n"
         return parse_graph(head + text, Catalog(self._plugins, self._graphs))
+
+    def bound(self, data):
+        """The bound graph of a spec as plain data; nothing is written and read."""
+        return bind(GraphSpec.model_validate(data), self._catalog)
 
     def run(self, text, inputs=None, *, watch=True, **options):
         """Runs the graph in ``text`` (or a bound one); options as in :class:`visint.Options`."""

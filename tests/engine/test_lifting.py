@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from visint.module import Module, Params, Ports
 from visint.testing.toys.scalars import Value
@@ -81,6 +82,24 @@ outputs: {note: note.value}
 """)
     assert [measure.value for measure in result.measures] == [1, 5, 5]
     assert stage.calls_of("five") == [(0, 0)]
+
+
+@pytest.mark.parametrize("value", [float(v) for v in range(2, 12)])
+def test_what_is_lifted_runs_before_the_loop_that_reads_it_after_a_turn(stage, value):
+    """Wherever the order of the schedule would put it, what goes round or is watched is there by then."""
+    result = stage.run(f"""
+loops: {{turns: {{times: 3, until: {{holds: never.above}}}}}}
+nodes:
+  high: {{uses: toy.constant, with: {{value: {value}}}}}
+  five: {{uses: toy.delay, loop: turns, with: {{start: {value}}}}}
+  never: {{uses: toy.threshold, loop: turns, with: {{at: 20}}, in: {{value: high.value}}}}
+  late: {{uses: toy.delay, loop: turns, feedback: {{value: {{from: five.value, start: 1}}}}}}
+  note: {{uses: toy.measure, loop: turns, in: {{value: late.value}}}}
+outputs: {{note: note.value}}
+""")
+    assert [measure.value for measure in result.measures] == [1, value, value]
+    names = [name for name, _, _ in stage.calls]
+    assert max(names.index("five"), names.index("never")) < names.index("late")
 
 
 def test_a_loop_all_of_whose_nodes_are_lifted_does_not_run(stage):
