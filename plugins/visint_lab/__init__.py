@@ -14,7 +14,9 @@ visint_contract = 1
 
 @hookimpl
 def visint_modules() -> list[type[Module[Any, Any, Any]]]:
-    """The lab's modules: the demonstration's scene as a node, and the metrics."""
+    """The lab's modules: rendered scenes as a node, the metrics, and the relay that engines are timed with."""
+    from visint_lab.engines.relay import Relay
     from visint_lab.metrics import MODULES
+    from visint_lab.render.node import Render
 
-    return list(MODULES)
+    return [Render, *MODULES, Relay]

@@ -19,7 +19,13 @@ PERCENT = ("bad1", "bad2", "bad2_low", "density")
 
 
 def command(
-    what: Annotated[str, typer.Argument(help="stereo: disparity on pairs; run: depth and shape on scenes.")],
+    what: Annotated[
+        str,
+        typer.Argument(
+            help="stereo: disparity on pairs; run: depth and shape on scenes; engine: what nodes and turns "
+            "cost; start: how long it takes to begin."
+        ),
+    ],
     on: Annotated[
         list[str] | None,
         typer.Option(help="Scene names or their beginnings (a, b/mozart), or folders of pairs."),
@@ -36,8 +42,13 @@ def command(
     from visint_lab.trials.contest import entrants, heats, standings
     from visint_lab.trials.gathering import gathered
 
+    if what in ("engine", "start"):
+        from visint_lab.engines import bench
+
+        bench.engines(peer, out) if what == "engine" else bench.start()
+        return
     if what not in ("stereo", "run"):
-        raise UsageError.of("VI701", f"there is no bench {what!r}", choices="stereo, run")
+        raise UsageError.of("VI701", f"there is no bench {what!r}", choices="stereo, run, engine, start")
     field = entrants(system or ["stereo_sgm"], _peers(peer))
     found: list[Heat] = []
     for heat in heats(gathered(on, what, size), field):

@@ -1,11 +1,6 @@
 """Engines: this one, bare Python and other people's, on the same chain and the same loop.
 
 One file an engine, ``on_<name>.py``: it says how the chain and the loop are spelled there, and nothing else.
-Each runs in a fresh process, ``python on_dask.py``, and prints what :mod:`stopwatch` measured.
+Each runs in a fresh process (``python on_dask.py``) and prints what ``stopwatch.py`` measured;
+``contest.py`` starts them one after the other.
 """
-
-from __future__ import annotations
-
-from visint_lab.engines.contest import OURS, PEERS, Heat, contest
-
-__all__ = ["OURS", "PEERS", "Heat", "contest"]

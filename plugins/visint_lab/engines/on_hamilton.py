@@ -16,31 +16,31 @@ def load() -> str:
     return ".".join(str(part) for part in version.VERSION)
 
 
-def _driver(nodes: int) -> Any:
+def _driver(nodes: int, name: str) -> Any:
     from hamilton import ad_hoc_utils, base, driver
     from hamilton.function_modifiers import parameterize, source
 
-    names = {f"n{i}": {"image": source(f"n{i - 1}" if i else "given")} for i in range(nodes)}
+    given = {f"n{i}": {"image": source(f"n{i - 1}" if i else "given")} for i in range(nodes)}
 
     def relay(image: object) -> object:
         """A node."""
         return image
 
     relay.__annotations__ = {"image": object, "return": object}
-    module = ad_hoc_utils.create_temporary_module(parameterize(**names)(relay), module_name=f"chain_{nodes}")
+    module = ad_hoc_utils.create_temporary_module(parameterize(**given)(relay), module_name=name)
     adapter = base.SimplePythonGraphAdapter(base.DictResult())
     return driver.Builder().with_modules(module).with_adapter(adapter).build()
 
 
 def chain(nodes: int, image: Any) -> Callable[[], Any]:
     """One parameterised function."""
-    built, last = _driver(nodes), f"n{nodes - 1}"
+    built, last = _driver(nodes, f"chain_{nodes}"), f"n{nodes - 1}"
     return lambda: built.execute([last], inputs={"given": image})[last]
 
 
 def loop(turns: int, image: Any) -> Callable[[], Any]:
     """Four nodes, executed once a turn."""
-    built = _driver(4)
+    built = _driver(4, "loop")
 
     def run() -> Any:
         value = image

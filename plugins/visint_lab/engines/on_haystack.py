@@ -22,10 +22,10 @@ def _components() -> tuple[Any, Any, Any]:
     from haystack import component
     from haystack.core.component.types import GreedyVariadic
 
-    def relay(self: Any, image: Any) -> dict[str, Any]:
+    def relay(self: Any, image: Any) -> dict[str, Any]:  # noqa: ARG001 - a method
         return {"image": image}
 
-    def begin(self: Any, image: Any) -> dict[str, Any]:
+    def begin(self: Any, image: Any) -> dict[str, Any]:  # noqa: ARG001 - a method
         return {"image": image[0]}
 
     def end(self: Any, image: Any) -> dict[str, Any]:

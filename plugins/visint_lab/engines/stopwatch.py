@@ -85,8 +85,8 @@ def measured(chain: Build, loop: Build, wanted: Asked) -> dict[str, Any]:
 
 def _sound(run: Run, image: Any) -> Run:
     """``run``, if the image goes through it whole: a graph that does less would be quick."""
-    given = run()
-    if np.shape(given) != image.shape or not np.array_equal(np.asarray(given), image):
+    given: Any = run()
+    if np.shape(given) != image.shape or not np.array_equal(given, image):
         raise ValueError("the image did not come out as it went in")
     return run
 
