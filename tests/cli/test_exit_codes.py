@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import os
 import resource
-import subprocess
-import sys
 
 import cv2
 import numpy as np
@@ -300,19 +298,16 @@ class TestDisk:
         assert files.contents(tmp_path) == was
         assert (tmp_path / "out").exists() is before
 
-    def test_file_size_limit(self, pair, tmp_path):
+    def test_file_size_limit(self, visint, pair, tmp_path):
         """``ulimit -f``: a message that names it, and no folder."""
-
-        def limit():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
-
-        call = [sys.executable, "-m", "visint", "run", "stereo_sgm", *pair.all, "--out", str(tmp_path / "out")]
-        environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
-        done = subprocess.run(
-            call, capture_output=True, text=True, preexec_fn=limit, check=False, env=environment
-        )
-        assert (done.returncode, done.stdout) == (5, "")
-        assert "ulimit -f" in done.stderr
+        before = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, before[1]))
+        try:
+            done = visint("run", "stereo_sgm", *pair.all, "--out", "out")
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        assert (done.code, done.out) == (5, "")
+        assert "ulimit -f" in done.err
         assert not list(tmp_path.iterdir())
 
 

@@ -322,6 +322,34 @@ outputs: {n: n.value}
             )
 
 
+class TestLists:
+    """An input that is a list of images."""
+
+    @pytest.fixture(autouse=True)
+    def graph(self, toys, tmp_path, pair):
+        (tmp_path / "many.yaml").write_text(
+            "visint: 1\nname: many\ninputs: {images: [Image]}\n"
+            "nodes: {mean: {uses: toy.stack, in: {images: inputs.images}}}\noutputs: {mean: mean.image}\n"
+        )
+        cv2.imwrite(str(tmp_path / "low.png"), cv2.imread(pair.left)[:30])
+
+    def test_in_is_given_again_and_again(self, visint, pair, tmp_path):
+        """In the order of the command line, on record and when run again."""
+        files = [pair.left, pair.right, pair.left]
+        inputs = [word for file in files for word in ("--in", f"images={file}")]
+        assert visint("run", "many.yaml", *inputs, "--out", "out").code == 0
+        record = json.loads((tmp_path / "out/run.json").read_text())
+        assert record["inputs"]["images"]["paths"] == files
+        assert visint("run", "out/run.json", "--out", "again").code == 0
+        assert (tmp_path / "again/mean.pfm").read_bytes() == (tmp_path / "out/mean.pfm").read_bytes()
+
+    def test_sizes_must_agree(self, refused, pair):
+        """The one that differs is named by its place in the list, from 0."""
+        inputs = ["--in", f"images={pair.left}", "--in", "images=low.png"]
+        said = refused(3, "run", "many.yaml", *inputs, "--out", "out")
+        assert "'images[0]' and 'images[1]' are of different sizes: 64 × 48 and 64 × 30" in said
+
+
 def test_python_gives_the_same_bytes(visint, pair, tmp_path, former, files):
     """The graph built in code, on the same files, saved from Python: every map byte for byte."""
     g = package.Builder("stereo_sgm", left="Image", right="Image", camera="Camera?")

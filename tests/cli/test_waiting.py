@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -124,6 +125,13 @@ class TestInterrupted:
         assert (done.code, done.out) == (130, "")
         assert "interrupted" in done.err
         assert not list(tmp_path.iterdir())
+
+
+def test_the_program_may_be_called_from_a_thread(visint, pair, tmp_path):
+    """Where signals cannot be listened to: it runs all the same."""
+    with ThreadPoolExecutor(1) as pool:
+        done = pool.submit(visint, "run", "stereo_sgm", *pair.all, "--out", "out").result(PATIENCE)
+    assert (done.code, done.err) == (0, "")
 
 
 def on_terminal(arguments, folder, **options):

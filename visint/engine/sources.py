@@ -91,7 +91,8 @@ def _misfits(graph: Graph, values: Mapping[str, Any]) -> list[Problem]:
 
 def _sizes(node: Node, values: Mapping[str, Any]) -> Iterator[tuple[str, tuple[int, int]]]:
     for port, edge in node.edges():
-        array = node.callee.inputs[port].array
+        spec = node.callee.inputs.get(port)
+        array = spec.array if spec else None
         if edge.source.node != INPUTS or array is None or array.dims[:2] != ("H", "W"):
             continue
         name, value = edge.source.port, values.get(edge.source.port)
