@@ -45,7 +45,9 @@ def _on_signals(interrupt: Callable[[], None]) -> Iterator[None]:
     def handle(signum: int, frame: FrameType | None) -> None:  # noqa: ARG001 - the form of a handler
         interrupt()
 
-    before = {which: signal.signal(which, handle) for which in (signal.SIGINT, signal.SIGTERM)}
+    mine = threading.current_thread() is threading.main_thread()  # no other one may listen
+    caught = (signal.SIGINT, signal.SIGTERM) if mine else ()
+    before = {which: signal.signal(which, handle) for which in caught}
     try:
         yield
     finally:
