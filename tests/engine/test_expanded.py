@@ -137,14 +137,9 @@ class TestTogether:
         near, far = 2 - inputs["left"], 2 - inputs["right"]
         np.testing.assert_allclose(result["depth"], (100 * near + 25 * far) / 125, rtol=1e-5)
         sweep = [name for name, level, turn in stage.calls if (level, turn) == (0, 0)]
-        assert sweep == ["map_begin", "a", "b", "b_cohere", "depth_reconcile", "map"] or sweep == [
-            "map_begin",
-            "b",
-            "b_cohere",
-            "a",
-            "depth_reconcile",
-            "map",
-        ]
+        assert sweep[0] == "map_begin"
+        assert sweep[-2:] == ["depth_reconcile", "map"]
+        assert sorted(sweep[1:-2]) == ["a", "b", "b_cohere"]
 
     def test_is_written_by_the_reconciler(self, stage, given):
         """Who wrote depth is the field's own step, not a spoke."""

@@ -129,12 +129,12 @@ outputs: {out: culprit.value}
 
     def test_an_error_of_visint_in_a_module_keeps_its_class_and_gets_a_place(self, own):
         """A module that meets a broken resource raises InputError; that it was this node is said, too."""
-        with pytest.raises(InputError, match="VI302 node 'culprit', own.reads.*the table is broken"):
+        with pytest.raises(InputError, match=r"VI302 node 'culprit', own.reads.*the table is broken"):
             own.run("nodes: {culprit: {uses: own.reads}}\noutputs: {out: culprit.value}")
 
     def test_exit_is_an_error_of_the_module(self, own):
         """A module that calls sys.exit does not end the program."""
-        with pytest.raises(ModuleError, match="VI401.*culprit.*SystemExit: 3"):
+        with pytest.raises(ModuleError, match=r"VI401.*culprit.*SystemExit: 3"):
             own.run("nodes: {culprit: {uses: own.exits}}\noutputs: {out: culprit.value}")
 
     def test_keyboard_interrupt_passes_through(self, own):
@@ -164,21 +164,21 @@ class TestWrongOutputs:
     def test_half_the_size_of_the_inputs(self, own, image):
         """Outputs that name the inputs' dims have the inputs' size."""
         with pytest.raises(
-            ModuleError, match="VI402.*culprit.*H is 21 on input 'image' but 11 on output 'image'"
+            ModuleError, match=r"VI402.*culprit.*H is 21 on input 'image' but 11 on output 'image'"
         ):
             own.run(one_node("own.thumb"), {"left": image})
 
     def test_half_the_size_of_a_list_of_inputs(self, own, image):
         """Lists name dims like any other port."""
-        with pytest.raises(ModuleError, match="VI402.*H is 21 on input 'images' but 11 on output 'image'"):
+        with pytest.raises(ModuleError, match=r"VI402.*H is 21 on input 'images' but 11 on output 'image'"):
             own.run(one_node("own.thumb_of_many", port="images"), {"left": image})
 
     def test_evidence_of_another_size(self, own, image):
-        with pytest.raises(ModuleError, match="VI402.*H is 21 on input 'image' but 20 on output 'evidence'"):
+        with pytest.raises(ModuleError, match=r"VI402.*H is 21 on input 'image' but 20 on output 'evidence'"):
             own.run(one_node("own.small_evidence", out="evidence"), {"left": image})
 
     def test_no_outputs_at_all(self, own, image):
-        with pytest.raises(ModuleError, match="VI402.*run returned dict; it must return ImagePorts"):
+        with pytest.raises(ModuleError, match=r"VI402.*run returned dict; it must return ImagePorts"):
             own.run(one_node("own.odd"), {"left": image})
 
 
@@ -196,14 +196,14 @@ outputs: {{pen: pen.image, witness: witness.image}}
     def test_writing_into_an_input_is_refused(self, stage, image, source):
         """It names the module; neither the caller's array nor a sibling's input changes."""
         before = image.copy()
-        with pytest.raises(ModuleError, match="VI403 node 'pen', toy.scribble.*wrote into one of its inputs"):
+        with pytest.raises(ModuleError, match=r"VI403 node 'pen', toy.scribble.*wrote into one of its inputs"):
             stage.run(self.TEXT.format(source=source), {"left": image})
         np.testing.assert_array_equal(image, before)
         assert image.flags.writeable
 
     def test_inputs_that_do_not_fit_each_other_are_told_at_the_node(self, stage, image):
         """A half-size image beside a full-size one in a list is refused before the module sees it."""
-        with pytest.raises(ModuleError, match="VI402 node 'mean', toy.stack.*H is 21 .* but 10"):
+        with pytest.raises(ModuleError, match=r"VI402 node 'mean', toy.stack.*H is 21 .* but 10"):
             stage.run(
                 """
 inputs: {left: Image, right: Image}

@@ -29,7 +29,8 @@ def test_a_node_fed_by_itself_twice(stage, times, wanted):
     result = stage.run(f"""
 loops: {{turns: {{times: {times}}}}}
 nodes:
-  sum: {{uses: toy.add, loop: turns, feedback: {{a: {{from: sum.sum, start: 1}}, b: {{from: old.value, start: 0}}}}}}
+  sum: {{uses: toy.add, loop: turns,
+         feedback: {{a: {{from: sum.sum, start: 1}}, b: {{from: old.value, start: 0}}}}}}
   old: {{uses: toy.delay, loop: turns, feedback: {{value: {{from: sum.sum, start: 0}}}}}}
 outputs: {{fibonacci: sum.sum}}
 """)
@@ -87,7 +88,7 @@ outputs: {flat: go.image, see: see.image}
 
     def test_number_needs_a_size(self, stage):
         """Where no input is an image nobody knows how large the flat array should be."""
-        with pytest.raises(InputError, match="VI305.*no image among its inputs"):
+        with pytest.raises(InputError, match=r"VI305.*no image among its inputs"):
             stage.run("""
 loops: {turns: {times: 1}}
 nodes: {go: {uses: toy.smooth, loop: turns, feedback: {image: {from: go.image, start: 0}}}}
@@ -136,7 +137,7 @@ outputs: {twice: twice.value}
         assert stage.calls_of("keep") == [(2, 0), (1, 0), (0, 0)]
 
     def test_plane_without_a_camera(self, stage, image):
-        """Without a camera the plane is relative, and the same at every level and size: f = width, d = width/10."""
+        """Without a camera the plane is relative, the same at every level and size: f = width, d = width/10."""
         stage.modules(own=[DepthLoop])
         text = PLANE.replace("camera: Camera", "camera: Camera?")
         np.testing.assert_allclose(stage.run(text, {"left": image})["depth"], 10.0, rtol=1e-6)
@@ -181,7 +182,7 @@ outputs: {depth: keep.depth}
 
 class TestDelay:
     def test_is_one_turn_of_the_innermost_loop_around_both(self, stage):
-        """From the inner loop of 3 to a node of the outer loop of 4: it sees the outer turn before (3, 6, 9)."""
+        """From an inner loop of 3 turns to a node of the outer one: it sees the outer turn before (3, 6, 9)."""
         result = stage.run("""
 loops: {outer: {times: 4}, inner: {inside: outer, times: 3}}
 nodes:
@@ -195,12 +196,13 @@ outputs: {seen: note.value, count: count.value}
         assert stage.calls_of("count") == [(0, turn) for _ in range(4) for turn in range(3)]
 
     def test_into_an_inner_loop_stays_put_there(self, stage):
-        """From the outer loop into the inner one: all turns of the inner loop see the same, the outer turn before."""
+        """From the outer loop into the inner one: all inner turns see the same, the outer turn before."""
         result = stage.run("""
 loops: {outer: {times: 3}, inner: {inside: outer, times: 2}}
 nodes:
   count: {uses: toy.counter, loop: outer, feedback: {value: {from: count.value}}}
-  add: {uses: toy.add, loop: inner, feedback: {a: {from: count.value, start: 100}, b: {from: add.sum, start: 0}}}
+  add: {uses: toy.add, loop: inner,
+        feedback: {a: {from: count.value, start: 100}, b: {from: add.sum, start: 0}}}
 outputs: {sum: add.sum}
 """)
         assert result["sum"] == 2 * (100 + 1 + 2)
@@ -230,7 +232,8 @@ outputs: {{count: count.value}}
 loops: {outer: {times: 3}, inner: {inside: outer, times: 3}}
 nodes:
   begin: {uses: toy.counter, loop: outer, feedback: {value: {from: begin.value}}}
-  twice: {uses: toy.diverge, loop: inner, feedback: {value: {from: twice.value, start: begin.value, restart: outer}}}
+  twice: {uses: toy.diverge, loop: inner,
+          feedback: {value: {from: twice.value, start: begin.value, restart: outer}}}
   note: {uses: toy.measure, loop: outer, in: {value: twice.value}}
 outputs: {twice: twice.value, note: note.value}
 """)
@@ -271,7 +274,7 @@ def test_what_goes_round_arrives_read_only(stage, image):
     from visint.errors import ModuleError
 
     for start in ("0", "inputs.left"):
-        with pytest.raises(ModuleError, match="VI403.*'pen'.*toy.scribble"):
+        with pytest.raises(ModuleError, match=r"VI403.*'pen'.*toy.scribble"):
             stage.run(
                 f"""
 inputs: {{left: Image}}

@@ -41,7 +41,7 @@ class TestNames:
             stage.run(SEE)
 
     def test_unknown_with_the_near_one(self, stage, image):
-        with pytest.raises(InputError, match="no input 'lift'.*\n.*inputs: left: Image.*Write: left="):
+        with pytest.raises(InputError, match=r"no input 'lift'.*\n.*inputs: left: Image.*Write: left="):
             stage.run(SEE, {"left": image, "lift": image})
 
     def test_all_problems_together(self, stage):
@@ -78,7 +78,7 @@ class TestArrays:
 
     @pytest.mark.parametrize("shape", [(4,), (2, 3, 4), (4, 5, 4), (4, 5, 2)])
     def test_other_shapes_are_refused(self, stage, shape):
-        with pytest.raises(InputError, match="VI305: the input 'left'.*this array has shape"):
+        with pytest.raises(InputError, match=r"VI305: the input 'left'.*this array has shape"):
             stage.run(SEE, {"left": np.zeros(shape, np.float32)})
 
     def test_colour_feeds_an_image_by_its_luminance(self, stage):
@@ -93,7 +93,7 @@ class TestArrays:
 
     @pytest.mark.parametrize("shape", [(0, 5), (5, 0), (0, 0)])
     def test_an_empty_image_is_refused(self, stage, shape):
-        with pytest.raises(InputError, match="VI305.*empty"):
+        with pytest.raises(InputError, match=r"VI305.*empty"):
             stage.run(SEE, {"left": np.zeros(shape, np.float32)})
 
     def test_one_pixel_is_an_image(self, stage):
@@ -102,7 +102,7 @@ class TestArrays:
     def test_lists_of_numbers_are_told_what_is_wanted(self, stage):
         """A nested list is float64 numbers: taken. Text is not."""
         assert stage.run(SEE, {"left": [[0.0, 1.0]]})["image"].tolist() == [[0, 1]]
-        with pytest.raises(InputError, match="VI305.*this is a str"):
+        with pytest.raises(InputError, match=r"VI305.*this is a str"):
             stage.run(SEE, {"left": "left.png"})
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.sparse import lil_matrix
@@ -45,7 +47,7 @@ outputs: {count: count.value}
 
 class TestConvergence:
     def test_change_below(self, stage):
-        """x ← x/2 + 1 from 0: 1, 1.5, 1.75 …; the change 2⁻ᵗ/(2 − 2⁻ᵗ) falls below 0.01 at turn 6, the seventh."""
+        """x ← x/2 + 1 from 0: the change 2⁻ᵗ/(2 − 2⁻ᵗ) falls below 0.01 at turn 6, the seventh."""
         text = halving(until="{change_of: half.value, below: 0.01}").replace("0.5}", "0.5, offset: 1}")
         result = stage.run(text.replace("start: 1", "start: 0"))
         change = [2.0**-t / (2 - 2.0**-t) for t in range(1, 20)]
@@ -79,7 +81,7 @@ outputs: {go: go.value}
         assert result.stops == [Stop("turns", 0, 5, "converged")]
 
     def test_counts_anew_at_each_level_and_outer_turn(self, stage, image):
-        """No change is measured across levels: the first turn of each never counts, though the value came along."""
+        """No change is measured across levels: the first turn of each never counts."""
         result = stage.run(
             """
 inputs: {left: Image}
@@ -165,7 +167,7 @@ class TestExhausted:
 
     def test_fail(self, stage):
         """`on_exhausted: fail` is an error that names the loop and the line to write."""
-        with pytest.raises(ModuleError, match="VI404.*'turns' went round 3 times") as caught:
+        with pytest.raises(ModuleError, match=r"VI404.*'turns' went round 3 times") as caught:
             stage.run(self.exhausted("fail"))
         assert caught.value.problems[0].fault == "graph"
         assert "on_exhausted: accept" in str(caught.value)
@@ -190,12 +192,12 @@ outputs: {{one: one.value, two: two.value}}
 
     @pytest.mark.parametrize(("second", "rate"), [(SEQUENTIAL, 1 / 4), (PARALLEL, 1 / 2)])
     def test_two_players_reach_nash(self, stage, second, rate):
-        """Reaction curves p = (5 − q)/2 meet at (5/3, 5/3); the error falls by ¼ a turn one after the other, ½ at once."""
+        """Reaction curves p = (5 − q)/2 meet at (5/3, 5/3): error × ¼ a turn in sequence, × ½ at once."""
         errors = []
         for times in range(1, 9):
             result = stage.run(self.GAME.format(times=times, second=second))
             errors.append(abs(result["two"] - 5 / 3))
-        assert [b / a for a, b in zip(errors, errors[1:], strict=False)] == pytest.approx([rate] * 7, rel=1e-9)
+        assert [b / a for a, b in pairwise(errors)] == pytest.approx([rate] * 7, rel=1e-9)
         result = stage.run(self.GAME.format(times=60, second=second))
         assert (result["one"], result["two"]) == pytest.approx((5 / 3, 5 / 3), abs=1e-12)
 

@@ -21,7 +21,7 @@ class Link(Module[Params, Frames, Frames]):
     """The image plus 1; counts how many of its outputs are alive at each call."""
 
     name = "link"
-    alive: weakref.WeakSet = weakref.WeakSet()
+    alive: weakref.WeakSet = weakref.WeakSet()  # noqa: RUF012
     most: list = []  # noqa: RUF012
 
     def run(self, inputs, ctx):

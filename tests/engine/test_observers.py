@@ -177,7 +177,8 @@ class TestProfile:
     def test_threads_have_lanes(self, stage):
         profile = Profile()
         stage.run(
-            "nodes:\n  a: {uses: toy.sleep, with: {seconds: 0.03}}\n  b: {uses: toy.sleep, with: {seconds: 0.03}}\n"
+            "nodes:\n  a: {uses: toy.sleep, with: {seconds: 0.03}}\n"
+            "  b: {uses: toy.sleep, with: {seconds: 0.03}}\n"
             "outputs: {a: a.value}",
             threads=2,
             observers=(profile,),

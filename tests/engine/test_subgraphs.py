@@ -1,4 +1,4 @@
-"""Sub-graphs: a call that keeps nothing between calls and sees the level, the turn and the size it is made at."""
+"""Sub-graphs: a call that keeps nothing between calls; it sees the level, turn and size it is made at."""
 
 from __future__ import annotations
 
@@ -180,7 +180,7 @@ outputs: {rows: call.rows}
 
     def test_a_plane_there_is_the_plane_of_the_level(self, stage, image, camera_for):
         """`start: plane` in a sub-graph at a level: the camera that arrives is the level's already."""
-        from visint.arrays import Array, Depth
+        from visint.arrays import Depth
 
         class DepthPorts(Ports):
             depth: Depth[Array, "H W"]
@@ -274,7 +274,8 @@ outputs: {y: culprit.value}
 """)
         with pytest.raises(ModuleError) as caught:
             stage.run(
-                'inputs: {x: Scalar}\nnodes: {call: {uses: "graph:breaks", in: {x: inputs.x}}}\noutputs: {y: call.y}',
+                'inputs: {x: Scalar}\nnodes: {call: {uses: "graph:breaks", in: {x: inputs.x}}}\n'
+                "outputs: {y: call.y}",
                 {"x": 1.0},
             )
         (problem,) = caught.value.problems

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -87,7 +88,7 @@ outputs: {c: c.value}
             threads=4,
         )
         spans = [(event.clock, event.clock + event.seconds) for event in stage.of(NodeFinished)]
-        assert all(after[0] >= before[1] for before, after in zip(spans, spans[1:], strict=False))
+        assert all(after[0] >= before[1] for before, after in pairwise(spans))
         assert [name for name, _, _ in stage.calls] == ["a", "b", "c"]
 
     def test_loops_overlap_and_do_not_lock_each_other(self, stage):
@@ -98,7 +99,8 @@ outputs: {c: c.value}
         )
         nodes = "\n".join(
             f"  n{i}{j}: {{uses: toy.noise, loop: c{i}}}\n"
-            f"  s{i}{j}: {{uses: toy.sleep, loop: c{i}, with: {{seconds: 0.002}}, in: {{value: n{i}{j}.value}}}}"
+            f"  s{i}{j}: {{uses: toy.sleep, loop: c{i}, with: {{seconds: 0.002}}, "
+            f"in: {{value: n{i}{j}.value}}}}"
             for i in range(3)
             for j in range(3)
         )
@@ -165,8 +167,8 @@ def failing_first(stage, nodes, seconds):
     """A graph of sleeping nodes and of one that fails, with parameters that put it first in order."""
     for shift in range(20):
         sleep = f"{{uses: toy.sleep, with: {{seconds: {seconds * (1 + shift / 1000)}}}}}"
-        text = f"nodes:\n  bad: {{uses: own.fails}}\n{nodes.replace('{sleep}', sleep)}\noutputs: {{o: bad.value}}\n"
-        graph = stage.graph(text)
+        nodes_now = nodes.replace("{sleep}", sleep)
+        graph = stage.graph(f"nodes:\n  bad: {{uses: own.fails}}\n{nodes_now}\noutputs: {{o: bad.value}}\n")
         if next(compile_graph(graph).root.steps()).node.name == "bad":
             return graph
     raise AssertionError("no such graph")
