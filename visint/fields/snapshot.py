@@ -26,9 +26,9 @@ class Writer(NamedTuple):
     turn: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class MapSnapshot:
-    """All fields of the map at one moment and one level.
+    """All fields of the map at one moment and one level; equal only to itself.
 
     Attributes
     ----------
