@@ -269,3 +269,42 @@ def warp(image, disparity, values, slopes):
             c3 = half * (d - a) + np.float32(1.5) * (b - c)
             values[y, x] = b + t * (c1 + t * (c2 + t * c3))
             slopes[y, x] = c1 + t * (two * c2 + np.float32(3) * t * c3)
+
+
+@njit(cache=True, nogil=True)
+def filling_costs(disparity, trusted, right, right_trusted, first, base, cost):
+    """What each level would cost a filled pixel: cost uint8 (H, W, D), levels as in :func:`hamming`.
+
+    A trusted pixel keeps to its own value, 20 a px up to 60. Elsewhere 4 at every level, and 30 where the
+    surface would hide from the right view something that it sees behind.
+    """
+    rows, columns, depth = cost.shape
+    for y in range(rows):
+        for x in range(columns):
+            low = first + base[y, x]
+            if trusted[y, x]:
+                for k in range(depth):
+                    off = abs(disparity[y, x] - np.float32(low + k))
+                    cost[y, x, k] = np.uint8(min(np.float32(20) * off, np.float32(60)))
+                continue
+            for k in range(depth):
+                there = x - low - k
+                hides = 0 <= there < columns and right_trusted[y, there] and right[y, there] < low + k - 1
+                cost[y, x, k] = np.uint8(30 if hides else 4)
+
+
+@njit(cache=True, nogil=True)
+def cheapest(total, shape, first, base, disparity):
+    """The disparity of the least cost of each pixel, float32 (H, W), whole levels."""
+    rows, columns, wide = shape
+    depth = U(wide)
+    for y in range(rows):
+        for x in range(columns):
+            at = U((y * columns + x) * wide)
+            low = np.uint16(65535)
+            for k in range(depth):
+                low = _least(low, total[at + k])
+            k = U(0)
+            while total[at + k] != low:
+                k += U(1)
+            disparity[y, x] = np.float32(first + base[y, x] + np.int64(k))

@@ -5,27 +5,54 @@ from __future__ import annotations
 import numpy as np
 
 from visint.arrays import Array
+from visint_stereo.semiglobal.volume import Check, Levels, Penalties, path_costs
 
-__all__ = ["evened", "from_behind"]
+__all__ = ["evened", "filled"]
+
+PENALTIES = Penalties(small=10, large=(12, 100), edge=10.0)
+"""Jumps of what is filled: dear on an even surface, nearly free at a brightness edge."""
 
 
-def from_behind(disparity: Array, trusted: Array) -> Array:
-    """float32 (H, W): ``disparity`` where trusted, else the smaller of the two nearest trusted in the row.
+def filled(
+    disparity: Array, trusted: Array, right: Array, levels: Levels, grades: Array, check: Check
+) -> Array:
+    """float32 (H, W): ``disparity`` where trusted; elsewhere what its surroundings and visibility suggest.
 
-    What one view alone sees lies behind its neighbour. NaN in rows that trust nothing.
+    The trusted values spread along eight paths as in the matching itself, but no value is taken that would
+    hide from the right view what that view sees behind. NaN everywhere if nothing is trusted.
+
+    Parameters
+    ----------
+    right
+        The right view's disparity, int32 (H, W).
+    grades
+        Brightness, uint16 (H, W): filled values change where it does.
     """
-    columns = disparity.shape[1]
-    here = np.arange(columns)
-    before = np.maximum.accumulate(np.where(trusted, here, -1), axis=1)
-    after = np.minimum.accumulate(np.where(trusted, here, columns)[:, ::-1], axis=1)[:, ::-1]
-    padded = np.pad(disparity.astype(np.float32), ((0, 0), (1, 1)), constant_values=np.inf)
-    nearest = [np.take_along_axis(padded, where + 1, axis=1) for where in (before, after)]
-    smaller = np.minimum(*nearest)
-    return np.where(trusted, disparity, np.where(np.isfinite(smaller), smaller, np.nan)).astype(np.float32)
+    from visint_stereo.semiglobal import _kernels
+
+    if not trusted.any():
+        return np.full_like(disparity, np.nan)
+    base = levels.lowest(disparity.shape)
+    cost = np.empty((*disparity.shape, levels.count), dtype=np.uint8)
+    backed = _backed(right, trusted)
+    _kernels.filling_costs(disparity, trusted, right, backed, levels.first, base, cost)
+    total = path_costs(cost, levels, grades, PENALTIES, check)
+    spread = np.empty_like(disparity)
+    _kernels.cheapest(total.reshape(-1), cost.shape, levels.first, base, spread)
+    return np.where(trusted, disparity, spread)
+
+
+def _backed(right: Array, trusted: Array) -> Array:
+    """Bool (H, W): right pixels whose own match in the left view is trusted."""
+    columns = right.shape[1]
+    column = np.arange(columns, dtype=np.int32) + right
+    inside = (column >= 0) & (column < columns)
+    found = np.take_along_axis(trusted, np.clip(column, 0, columns - 1), axis=1)
+    return np.asarray(inside & found)
 
 
 def evened(disparity: Array) -> Array:
-    """``disparity`` by a median of 5×5: rows filled one by one no longer fray. NaN stays NaN."""
+    """``disparity`` by a median of 5×5. NaN stays NaN."""
     import cv2
 
     known = np.isfinite(disparity)

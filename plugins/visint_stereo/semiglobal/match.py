@@ -9,7 +9,7 @@ import numpy as np
 from visint.arrays import Array
 from visint_stereo.semiglobal.brightness import graded
 from visint_stereo.semiglobal.consistency import agreed, occluded, without_speckles
-from visint_stereo.semiglobal.fill import evened, from_behind
+from visint_stereo.semiglobal.fill import evened, filled
 from visint_stereo.semiglobal.refine import refined
 from visint_stereo.semiglobal.reliability import TrainedOn, contrast, reliability, signs
 from visint_stereo.semiglobal.volume import (
@@ -27,6 +27,8 @@ __all__ = ["Match", "Settings", "matched"]
 
 FILLED = 4.0
 """Sigma of a disparity filled from its neighbours, px."""
+FLAT = 0.1
+"""The most that a pixel without any texture around is trusted: all it has comes from afar."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,12 +64,12 @@ def matched(left: Array, right: Array, levels: Levels, settings: Settings, check
     trusted = without_speckles(won.disparity, trusted, settings.speckle)
     views = (here.astype(np.float32) / 16, there.astype(np.float32) / 16)
     fine, sigma = refined(won.disparity, trusted, views, levels)
-    disparity = evened(from_behind(fine, trusted))
+    disparity = evened(filled(fine, trusted, won.right, levels, here, check))
     trust = reliability(signs(here, won, trusted, np.nan_to_num(disparity)), settings.trained_on)
     return Match(
         disparity,
         np.where(trusted, sigma, np.float32(FILLED)),
-        np.where(seen, trust, np.float32(0)),
+        np.where(seen, trust, np.minimum(trust, np.float32(FLAT))),
         trusted,
         occluded(won.disparity, won.right, trusted),
     )

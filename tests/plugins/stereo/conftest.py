@@ -90,9 +90,14 @@ def filled() -> Callable[[Array], Array]:
     """Disparity with its holes filled by the smaller row neighbour, as the peers' are."""
 
     def fill(disparity: Array) -> Array:
-        from visint_stereo.semiglobal.fill import from_behind
-
-        return np.nan_to_num(from_behind(np.nan_to_num(disparity), np.isfinite(disparity)))
+        columns = disparity.shape[1]
+        known, here = np.isfinite(disparity), np.arange(columns)
+        before = np.maximum.accumulate(np.where(known, here, -1), axis=1)
+        after = np.minimum.accumulate(np.where(known, here, columns)[:, ::-1], axis=1)[:, ::-1]
+        padded = np.pad(disparity, ((0, 0), (1, 1)), constant_values=np.inf)
+        nearest = [np.take_along_axis(padded, where + 1, axis=1) for where in (before, after)]
+        smaller = np.minimum(*nearest)
+        return np.where(known, disparity, np.where(np.isfinite(smaller), smaller, 0))
 
     return fill
 
