@@ -7,8 +7,9 @@ from typing import Any
 
 from visint.errors import UsageError
 from visint.graph.bind import bind
+from visint.graph.complaints import made
 from visint.graph.graph import INPUTS, Graph
-from visint.graph.spec import FeedbackSpec, GraphSpec, HubSpec, LoopSpec, NodeSpec
+from visint.graph.spec import GraphSpec, HubSpec, LoopSpec, NodeSpec
 from visint.names import PortRef
 from visint.registry import Catalog, installed
 
@@ -76,7 +77,7 @@ class Builder:
 
     def loop(self, name: str, **spec: Any) -> str:
         """Adds a loop (``times=20``, or ``over="pyramid", coarsest=8``); returns its name for ``add``."""
-        self._loops[name] = LoopSpec.model_validate(spec)
+        self._loops[name] = made(LoopSpec, spec, self._name, "loops", name)
         return name
 
     def add(
@@ -113,18 +114,15 @@ class Builder:
         """
         if node_name in self._nodes:
             raise UsageError.of("VI223", f"the graph has a node {node_name!r} already")
-        fed = {
-            port: FeedbackSpec.model_validate({key: _text(one) for key, one in spec.items()})
-            for port, spec in (feedback or {}).items()
-        }
+        fed = {port: {key: _text(one) for key, one in spec.items()} for port, spec in (feedback or {}).items()}
         ins = {port: _refs(value) for port, value in ports.items()}
         keys = {"uses": uses, "with": dict(params or {}), "in": ins, "feedback": fed, **(options or {})}
-        self._nodes[node_name] = NodeSpec.model_validate(keys)
+        self._nodes[node_name] = made(NodeSpec, keys, self._name, "nodes", node_name)
         return NodeHandle(node_name)
 
     def hub(self, spec: Mapping[str, Any]) -> NodeHandle:
         """Sets the hub, as the mapping a graph file would hold; gives the map, ``map.depth`` and so on."""
-        self._hub = HubSpec.model_validate(dict(spec))
+        self._hub = made(HubSpec, dict(spec), self._name, "hub")
         return NodeHandle("map")
 
     def control(self, name: str, **settings: Any) -> Builder:
@@ -140,17 +138,18 @@ class Builder:
         GraphError
             If it is wrong, as for a graph file.
         """
-        spec = GraphSpec(
-            visint=1,
-            name=self._name,
-            about=self._about,
-            inputs=self._inputs,  # type: ignore[arg-type]
-            loops=self._loops,
-            nodes=self._nodes,
-            hub=self._hub,
-            controls=self._controls,
-            outputs={name: str(ref) for name, ref in outputs.items()},
-        )
+        parts = {
+            "visint": 1,
+            "name": self._name,
+            "about": self._about,
+            "inputs": self._inputs,
+            "loops": self._loops,
+            "nodes": self._nodes,
+            "hub": self._hub,
+            "controls": self._controls,
+            "outputs": {name: str(ref) for name, ref in outputs.items()},
+        }
+        spec = made(GraphSpec, parts, self._name)
         return bind(spec, self._catalog or installed())
 
 

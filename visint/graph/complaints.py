@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import Any, NamedTuple, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from visint.errors import Problem, Where
+from visint.errors import GraphError, Problem, Where
 from visint.graph.examples import CHILDREN, EXAMPLES, MEMBERS
 from visint.graph.spec import GraphSpec
 from visint.graph.write import as_written
 from visint.names import did_you_mean, listed
 
-__all__ = ["complaints", "keys_of", "shown"]
+__all__ = ["complaints", "keys_of", "made", "shown"]
 
 Finder = Callable[..., Where]
 Path = tuple[int | str, ...]
+Model = TypeVar("Model", bound=BaseModel)
 
 
 def keys_of(model: type[BaseModel]) -> list[str]:
@@ -37,8 +39,12 @@ def shown(value: Any) -> str:
 
 def complaints(error: ValidationError, data: Any, where: Finder) -> list[Problem]:
     """One problem for each place that pydantic complains about, in the order of the file."""
+    return _told(error.errors(include_input=False, include_url=False), data, where)
+
+
+def _told(items: Sequence[Any], data: Any, where: Finder) -> list[Problem]:
     found: dict[Path, tuple[str, Problem]] = {}
-    for item in error.errors(include_input=False, include_url=False):
+    for item in items:
         path = _path_in(data, item["loc"], item["type"])
         if item["loc"][-1:] == ("str",) and isinstance(_at(data, path), list):
             continue  # text or a list may stand here; what is wrong with the list is told by itself
@@ -51,6 +57,29 @@ def complaints(error: ValidationError, data: Any, where: Finder) -> list[Problem
     }
     told = [problem for path, (near, problem) in found.items() if near or path not in meant]
     return sorted(told, key=lambda problem: (problem.where.line, problem.where.column))
+
+
+def made(model: type[Model], data: Mapping[str, Any], file: str, *path: str) -> Model:
+    """A part of a graph that is built in code, which would stand at ``path``; complaints are those of a file.
+
+    Raises
+    ------
+    GraphError
+        VI105, as for a graph file.
+    """
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        whole: Any = data
+        for key in reversed(path):
+            whole = {key: whole}
+        items = [{**item, "loc": (*path, *item["loc"])} for item in error.errors(include_url=False)]
+        where = partial(_nowhere, file)
+        raise GraphError(_told(items, whole, where)) from None
+
+
+def _nowhere(file: str, *path: str | int, key: bool = False) -> Where:  # noqa: ARG001 - the form of a finder
+    return Where(file, path=".".join(map(str, path)))
 
 
 def _path_in(data: Any, loc: tuple[int | str, ...], kind: str) -> Path:

@@ -132,9 +132,16 @@ class GraphSpec(_Part):
 
     def plain(self) -> Mapping[str, Any]:
         """The spec as the mapping a graph file holds: defaults left out, keys as written."""
-        data: dict[str, Any] = self.model_dump(by_alias=True, exclude_defaults=True, mode="json")
+        data: dict[str, Any] = self.model_dump(by_alias=True, exclude_defaults=True)
         _spell_starts(self, data)
-        return {"visint": self.visint, **data}
+        return {"visint": self.visint, **{key: _listed(value) for key, value in data.items()}}
+
+
+def _listed(value: Any) -> Any:
+    """Plain data has lists where a spec has tuples; keys stay what they are."""
+    if isinstance(value, dict):
+        return {key: _listed(one) for key, one in value.items()}
+    return [_listed(one) for one in value] if isinstance(value, list | tuple) else value
 
 
 def _spell_starts(spec: GraphSpec, data: dict[str, Any]) -> None:

@@ -12,6 +12,7 @@ __all__ = ["as_written", "to_yaml"]
 
 _WIDE = 100
 _BARE = re.compile(r"[A-Za-z_/][A-Za-z0-9_./?:-]*(?<!:)\Z")
+_NOT_FINITE = {"inf": ".inf", "-inf": "-.inf", "nan": ".nan"}
 _WORDS = frozenset({"null", "true", "false", "~", "yes", "no", "on", "off"})
 
 
@@ -53,7 +54,7 @@ def _scalar(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int | float):
-        return repr(value)
+        return _NOT_FINITE.get(repr(value), repr(value))
     text = str(value)
     if _BARE.match(text) and text.lower() not in _WORDS:
         return text
