@@ -126,9 +126,12 @@ class Call:
             state.tell(NodeFailed(name, level, turn, str(failure)))
             raise failure from (None if failure is error else error)
         seconds = perf_counter() - started
-        total = state.record.seconds[name, level]
-        total[0] += 1
-        total[1] += seconds
+        spent = state.record.seconds
+        if (total := spent.get((name, level))) is None:
+            spent[name, level] = [1, seconds]
+        else:
+            total[0] += 1
+            total[1] += seconds
         if state.emit is not None:
             state.emit(_event(NodeFinished, (name, level, turn, started, seconds, outputs)))
         return outputs

@@ -17,6 +17,10 @@ from visint.schedule import Repeat
 __all__ = ["Turns"]
 
 
+_tuple = tuple.__new__
+"""Makes a named tuple in a third of the time that calling its class takes."""
+
+
 class Turns:
     """A turn loop made ready to run."""
 
@@ -38,19 +42,20 @@ class Turns:
         before: Any = None
         calm = 0
         reason: records.Reason = "exhausted" if self._until else "times"
-        turn = 0
+        turn, name = 0, self._repeat.loop.name
         begin(state, self._repeat.cells, frame)
         for turn in range(self._times):
             for slot in self._restarts:  # of loops inside: none of them is one of this loop's cells
                 state.begun.pop(slot, None)
-            self._body(state, Frame(frame.level, frame.size, (*frame.turns, turn)))
+            self._body(state, _tuple(Frame, (frame.level, frame.size, (*frame.turns, turn))))
             carry(state, self._repeat.cells, frame.level)
-            change = self._change(state, frame, turn, before)
+            change = None
             if self._repeat.change is not None:
+                change = self._change(state, frame, turn, before)
                 before = state.slots[self._repeat.change]
                 calm = calm + 1 if self._is_calm(change) else 0
             if state.emit is not None:
-                state.emit(TurnFinished(state.within + self._repeat.loop.name, frame.level, turn, change))
+                state.emit(_tuple(TurnFinished, (state.within + name, frame.level, turn, change)))
             ended = self._ended(state, calm)
             if ended is not None:
                 reason = ended
