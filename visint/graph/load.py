@@ -47,14 +47,15 @@ def load_named(name: str, catalog: Catalog, calling: tuple[str, ...] = ()) -> Gr
 
 def find_named(name: str, catalog: Catalog) -> Path:
     """The file of the installed graph ``name``; :class:`GraphError` VI108 if there is none."""
-    known = catalog.graphs()
-    if name not in known:
+    path = catalog.graph_file(name)
+    if path is None:
+        known = catalog.graphs()
         near = did_you_mean(name, known)
         write = near or f"./{name}.yaml  (a path, for a file of your own)"
         raise GraphError(
             Problem("VI108", f"no graph is named {name!r}", choices="graphs: " + listed(known), write=write)
         )
-    return known[name]
+    return path
 
 
 def _load_file(path: Path, catalog: Catalog, calling: tuple[str, ...] = ()) -> Graph:

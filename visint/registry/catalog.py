@@ -37,6 +37,7 @@ class Catalog:
     ) -> None:
         self._given = plugins
         self._graphs = graphs
+        self._claims: Mapping[str, Mapping[str, Path]] | None = None
         self._entries: Mapping[str, tuple[Entry, ...]] | None = None
         self._loaded: dict[str, Plugin | PluginError] = {}
 
@@ -104,17 +105,37 @@ class Catalog:
 
     def graphs(self) -> Mapping[str, Path]:
         """Graph files by name (a file's stem), of every installed folder of graph files."""
-        if self._graphs is None:
-            self._graphs = _graph_files()
-        return self._graphs
+        return {name: next(iter(claims.values())) for name, claims in self._graph_claims().items()}
+
+    def graph_file(self, name: str) -> Path | None:
+        """The file of the graph ``name``, or None if there is none.
+
+        Raises
+        ------
+        PluginError
+            VI502 if two distributions bring a graph of that name; both are named, neither is chosen.
+        """
+        claims = self._graph_claims().get(name, {})
+        if len(claims) > 1:
+            found = f"the graph {name!r} is brought by {' and '.join(claims)}"
+            files = "files: " + ", ".join(map(str, claims.values()))
+            raise PluginError.of("VI502", found, choices=files, write=str(next(iter(claims.values()))))
+        return next(iter(claims.values()), None)
+
+    def _graph_claims(self) -> Mapping[str, Mapping[str, Path]]:
+        if self._claims is None:
+            given = self._graphs
+            self._claims = _graph_files() if given is None else {name: {"code": given[name]} for name in given}
+        return self._claims
 
 
-def _graph_files() -> dict[str, Path]:
-    found: dict[str, Path] = {}
-    for entries in discover("visint.graphs").values():
-        for folder in _folders(only(entries)):
+def _graph_files() -> dict[str, dict[str, Path]]:
+    """Graph files by name and by who brings them; of one distribution the first folder counts."""
+    found: dict[str, dict[str, Path]] = {}
+    for entry in (entry for entries in discover("visint.graphs").values() for entry in entries):
+        for folder in _folders(entry):
             for path in sorted(folder.glob("*.yaml")):
-                found.setdefault(path.stem, path)
+                found.setdefault(path.stem, {}).setdefault(entry.origin, path)
     return dict(sorted(found.items()))
 
 

@@ -81,7 +81,7 @@ def load_plugin(name: str, origin: str, target: object) -> Plugin:
             name,
             origin,
             _by_name(each for given in _given(hook.visint_modules) for each in given),
-            {kind.name: _own_kind(name, kind) for given in _given(hook.visint_fields) for kind in given},
+            _kinds(name, (kind for given in _given(hook.visint_fields) for kind in given)),
             dict(_policy(item) for given in _given(hook.visint_policies) for item in given.items()),
             {kind: writer for given in _given(hook.visint_writers) for kind, writer in given.items()},
             hook,
@@ -139,7 +139,11 @@ def _policy(item: tuple[str, Any]) -> tuple[str, Mapping[str, Mapping[str, Any]]
     return name, kinds
 
 
-def _own_kind(plugin: str, kind: FieldKind) -> FieldKind:
+def _kinds(plugin: str, kinds: Iterable[Any]) -> dict[str, FieldKind]:
+    return {kind.name: kind for kind in (_own_kind(plugin, each) for each in kinds)}
+
+
+def _own_kind(plugin: str, kind: Any) -> FieldKind:
     if not isinstance(kind, FieldKind):
         raise TypeError(f"visint_fields gave {kind!r}, which is no FieldKind")
     if not kind.name.startswith(f"{plugin}."):
