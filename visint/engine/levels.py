@@ -38,7 +38,8 @@ class Levels:
         fitted = [self._pyramid_of(state.slots[fit.source], fit.kind, len(sizes)) for fit in self._pyramid.fits]
         for level in reversed(range(len(sizes))):
             inner = Frame(level, sizes[level], frame.turns)
-            state.tell(LevelStarted(name, level, sizes[level]))
+            if state.emit is not None:
+                state.emit(LevelStarted(name, level, sizes[level]))
             for fit, values in zip(self._pyramid.fits, fitted, strict=True):
                 state.slots[fit.slot] = values[level]
                 values[level] = None
@@ -49,7 +50,8 @@ class Levels:
             self._body(state, inner)
             carry(state, self._pyramid.cells, level)
         state.record.stops.append(records.Stop(name, 0, len(sizes), "times"))
-        state.tell(LoopEnded(name, 0, len(sizes), "times"))
+        if state.emit is not None:
+            state.emit(LoopEnded(name, 0, len(sizes), "times"))
 
     def _sizes(self, frame: Frame) -> list[tuple[int, int]]:
         if frame.size is None:

@@ -85,7 +85,8 @@ class Turns:
     def _stop(self, state: State, frame: Frame, turns: int, reason: records.Reason) -> None:
         name = state.within + self._repeat.loop.name
         state.record.stops.append(records.Stop(name, frame.level, turns, reason))
-        state.tell(LoopEnded(name, frame.level, turns, reason))
+        if state.emit is not None:
+            state.emit(LoopEnded(name, frame.level, turns, reason))
         if reason != "exhausted":
             return
         said = f"the loop {name!r} went round {turns} times at level {frame.level} without ending"

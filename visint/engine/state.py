@@ -78,10 +78,10 @@ class State:
         place = (self.within + node, frame.level, frame.turn)
         if what == "measure":
             self.record.measures.append(records.Measure(*place, name, value))
-            self.tell(Measured(*place, name, value))
         else:
             self.record.warnings.append(records.Warned(*place, name, value))
-            self.tell(Warned(*place, name, value))
+        if self.emit is not None:
+            self.emit((Measured if what == "measure" else Warned)(*place, name, value))
 
     def tell(self, event: Event) -> None:
         """Hands an event to whoever listens."""
