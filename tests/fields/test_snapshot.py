@@ -69,8 +69,9 @@ class TestReading:
 
     def test_an_unknown_field_is_a_key_error(self):
         for name in ("dpeth", "texture_confidence", ""):
-            with pytest.raises(KeyError):
-                snapshot().read(name)
+            for depth in (DEPTH, None):
+                with pytest.raises(KeyError):
+                    snapshot(depth).read(name)
 
     def test_many_readers_at_once_get_one_array(self):
         """Threads that read a derived field together all get the same values."""

@@ -71,6 +71,8 @@ class MapSnapshot:
         if name == "regions":
             boundaries = self.values.get("boundaries")
             return None if boundaries is None else read_only(_regions(boundaries))
+        if name not in ("disparity", "normals", "slopes"):
+            raise KeyError(name)
         depth = self.values["depth"]
         if depth is None:
             return None
@@ -78,9 +80,7 @@ class MapSnapshot:
             return read_only(geometry.disparity_from_depth(depth, self.camera))
         if name == "normals":
             return read_only(geometry.normals_from_depth(depth, self.camera))
-        if name == "slopes":
-            return read_only(geometry.slopes_from_depth(depth))
-        raise KeyError(name)
+        return read_only(geometry.slopes_from_depth(depth))
 
     def with_field(self, name: str, value: Any, confidence: Array | None, writer: Writer) -> MapSnapshot:
         """A new snapshot in which one field is replaced; its confidence stays where None is given."""
