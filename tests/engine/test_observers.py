@@ -7,7 +7,7 @@ import json
 import pytest
 
 from visint import events
-from visint.engine import call, loops
+from visint.engine import call, levels, loops, state
 from visint.engine.profile import Profile
 
 TEXT = """
@@ -62,14 +62,16 @@ def test_calls_announced_are_the_most_there_can_be(stage, image):
 
 
 def test_nobody_listening_costs_no_event(stage, image, monkeypatch):
-    """Without an observer no event is ever made, node by node or turn by turn."""
+    """Without an observer no event is ever made while nodes, turns and levels go by."""
 
     def forbidden(*args):
         raise AssertionError("an event for nobody")
 
-    monkeypatch.setattr(call, "NodeStarted", forbidden)
-    monkeypatch.setattr(call, "NodeFinished", forbidden)
-    monkeypatch.setattr(loops, "TurnFinished", forbidden)
+    made = {call: ("NodeStarted", "NodeFinished"), loops: ("TurnFinished", "LoopEnded")}
+    made |= {levels: ("LevelStarted", "LoopEnded"), state: ("Measured", "Warned")}
+    for module, names in made.items():
+        for name in names:
+            monkeypatch.setattr(module, name, forbidden)
     stage.run(TEXT, {"left": image}, watch=False)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import _thread
 import threading
 import time
 from itertools import pairwise
@@ -238,6 +239,25 @@ outputs: {a: a.value, b: b.value}
             stage.run(text, threads=5)
         assert time.monotonic() - started < 5
         assert threading.active_count() == before
+
+    def test_keyboard_interrupt_while_waiting_ends_everything(self, stage):
+        """Ctrl-C reaches the thread that waits for the others: they stop at their next check."""
+        before = threading.active_count()
+        threading.Timer(0.2, _thread.interrupt_main).start()
+        started = time.monotonic()
+        with pytest.raises(KeyboardInterrupt):
+            stage.run(wide(4, seconds=10), threads=2)
+        assert time.monotonic() - started < 5
+        assert threading.active_count() == before
+        assert stage.events[-1].failed
+
+    def test_the_callers_flag_is_left_alone(self, stage):
+        """A failure stops the rest of the run, and not the next run with the same options."""
+        stage.modules(own=[Fails])
+        cancel = threading.Event()
+        with pytest.raises(ModuleError):
+            stage.run(failing_first(stage, "  beside: {sleep}", 1.0), threads=2, cancel=cancel)
+        assert not cancel.is_set()
 
 
 class TestCancelling:
