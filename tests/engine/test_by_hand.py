@@ -69,8 +69,9 @@ def by_hand(left, right):
             )
         bright = picture(lefts[level], 2.0 if level == 3 else 1.0)
         still = picture(means[level], 0.1)
-        before, calm = None, 0
-        for sweep in range(1, 9):
+        before, calm, sweep = None, 0, 0
+        while sweep < 8 and calm < 2:
+            sweep += 1
             back = picture(back_cell, 0.05)
             anew = bright
             for _ in range(3):
@@ -81,8 +82,6 @@ def by_hand(left, right):
                 change = np.linalg.norm(couple - before) / np.linalg.norm(couple)
                 calm = calm + 1 if change < 0.02 else 0
             before = couple
-            if calm == 2:
-                break
         sweeps.append(sweep)
         after = stack(couple, bright)
     return {"last": picture(after, 3.0), "couple": couple, "back": back}, sweeps
@@ -91,7 +90,7 @@ def by_hand(left, right):
 @pytest.mark.parametrize("threads", [1, 3])
 @pytest.mark.parametrize("size", [(29, 22), (32, 16), (9, 40)])
 def test_four_levels_of_sweeps_and_rounds(stage, size, threads):
-    """The very bits: levels, converging sweeps, rounds in them; what carries on, restarts, pauses, is lifted."""
+    """The very bits: levels, converging sweeps, rounds; what carries on, restarts, pauses, is lifted."""
     rng = np.random.default_rng(11)
     left, right = rng.random(size, dtype=np.float32), rng.random(size, dtype=np.float32)
     result = stage.run(TEXT, {"left": left, "right": right}, threads=threads)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import _thread
+import os
+import signal
 import threading
 import time
 from itertools import pairwise
@@ -243,7 +244,7 @@ outputs: {a: a.value, b: b.value}
     def test_keyboard_interrupt_while_waiting_ends_everything(self, stage):
         """Ctrl-C reaches the thread that waits for the others: they stop at their next check."""
         before = threading.active_count()
-        threading.Timer(0.2, _thread.interrupt_main).start()
+        threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
         started = time.monotonic()
         with pytest.raises(KeyboardInterrupt):
             stage.run(wide(4, seconds=10), threads=2)
