@@ -104,7 +104,8 @@ class ArraySpec:
             raise ValueError(f"wants {self}; this array is {value.dtype}")
         if value.ndim != self._ndim or (self._fixed and any(value.shape[i] != n for i, n in self._fixed)):
             raise ValueError(f"wants {self}; this array has shape {value.shape}")
-        return read_only(value)
+        flags = value.flags
+        return value if flags.c_contiguous and not flags.writeable else read_only(value)
 
     def _plain(self, value: object) -> Array:
         """A subclass as a plain array: memory maps and matrices may come in, a mask would be lost."""

@@ -15,7 +15,7 @@ from pydantic_core.core_schema import CoreSchema, no_info_after_validator_functi
 from visint.arrays import ArraySpec
 from visint.fields.evidence import Evidence
 
-__all__ = ["PortSpec", "Ports"]
+__all__ = ["PortSpec", "Ports", "always"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +98,7 @@ def _agreement(specs: Mapping[str, PortSpec]) -> Callable[[Mapping[str, Any]], N
     ]
     named = [dim for _, many, _, dims in plan for _, dim in dims * (1 + many)]
     if len(named) == len(set(named)):
-        return _always
+        return always
 
     def agree(values: Mapping[str, Any]) -> None:
         sizes: dict[str, tuple[int, str]] = {}
@@ -118,8 +118,8 @@ def _agreement(specs: Mapping[str, PortSpec]) -> Callable[[Mapping[str, Any]], N
     return agree
 
 
-def _always(values: Mapping[str, Any]) -> None:
-    pass
+def always(values: Mapping[str, Any]) -> None:
+    """The check of a class whose ports share no dim."""
 
 
 class Ports(BaseModel):
@@ -147,7 +147,7 @@ class Ports(BaseModel):
     def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> CoreSchema:
         schema: CoreSchema = handler(source)
         specs = {name: _port(name, _annotation(cls, name)) for name in cls.model_fields}
-        if _agreement(specs) is _always:  # the check of a single port costs nothing but this look
+        if _agreement(specs) is always:  # the check of a single port costs nothing but this look
             return schema
         return no_info_after_validator_function(_agreeing, schema)
 

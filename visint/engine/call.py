@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
@@ -56,6 +57,7 @@ class Call:
 
     __slots__ = (
         "_defaults",
+        "_has_lists",
         "_invoke",
         "_key",
         "_levels",
@@ -73,6 +75,7 @@ class Call:
         self._lists = tuple((port, slot) for port, slot in step.ins if not isinstance(slot, int))
         inputs = step.node.callee.inputs
         self._never_none = tuple(p for p, _ in self._singles if inputs[p].many and not inputs[p].optional)
+        self._has_lists = bool(self._lists or self._never_none)
         self._outs = step.outs
         self._levels = None if step.node.levels is None else frozenset(step.node.levels)
         self._per_turn = step.node.callee.module is None or per_turn(step.node)
@@ -97,21 +100,21 @@ class Call:
             return
         if state.cancel.is_set():
             state.check()
-        outputs = self._timed(state, frame, self._fed(slots))
-        for slot, port, reader in self._outs:
-            value = outputs[port]
-            slots[slot] = value if reader == "plain" else read_as(value, reader)
-
-    def _fed(self, slots: list[Any]) -> Values:
         values = self._defaults.copy()
         for port, source in self._singles:
             values[port] = slots[source]
+        if self._has_lists:
+            self._fill_lists(values, slots)
+        outputs = self._timed(state, frame, values)
+        for slot, port, reader in self._outs:
+            slots[slot] = outputs[port] if reader == "plain" else read_as(outputs[port], reader)
+
+    def _fill_lists(self, values: Values, slots: list[Any]) -> None:
         for port in self._never_none:
             if values[port] is None:
                 values[port] = ()  # a list that a node limited to some levels gives is empty elsewhere
         for port, sources in self._lists:
             values[port] = tuple([one for slot in sources if (one := slots[slot]) is not None])
-        return values
 
     def _timed(self, state: State, frame: Frame, values: Values) -> Any:
         name, level = state.within + self.node.name, frame.level
@@ -138,7 +141,9 @@ class Call:
 
     def _context(self, state: State, frame: Frame) -> Context:
         context = _context(Context)  # slot by slot: keywords would take a tenth of the whole call
-        context.level, context.size, context._turns = frame
+        context.level = frame.level
+        context.size = frame.size
+        context._turns = frame.turns
         context._seed = (*state.seed, self._key)
         context._per_turn = self._per_turn
         context._note = partial(state.note, self.node.name, frame)
@@ -173,7 +178,12 @@ def _said(error: BaseException) -> tuple[str, str]:
     text = " ".join(str(error).split()) or "no message"
     if isinstance(error, ValueError) and "read-only" in text:
         return "VI403", f"it wrote into one of its inputs ({text}); copy it first"
-    return "VI401", f"{type(error).__name__}: {text[:500]}"
+    return "VI401", f"{type(error).__name__}: {_without_arrays(text)}"
+
+
+def _without_arrays(text: str) -> str:
+    """A module's message without the contents of arrays, which numpy prints between brackets."""
+    return re.sub(r"(array\()?\[[-+\d.\seEnaif,\[\]]{12,}(\]\)?|\.\.\.).*", "[…]", text)[:300]
 
 
 def _defaults(node: Node) -> Values:

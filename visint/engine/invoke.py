@@ -12,6 +12,7 @@ from pydantic import BaseModel
 from visint.engine.state import State
 from visint.errors import ModuleError
 from visint.module import Context, Params, Ports, PortSpec
+from visint.ports import always
 from visint.registry.load import AnyModule
 
 __all__ = ["Invoke", "Values", "invoke_module"]
@@ -34,14 +35,13 @@ def invoke_module(module: type[AnyModule], params: Any) -> Invoke:
     assert isinstance(params, Params)
     run = module(params).run
     inputs_type, outputs_type = module.Inputs, module.Outputs
-    agree, fields, new = inputs_type.dims_agree, set(inputs_type.model_fields), inputs_type.__new__
+    agree = None if inputs_type.dims_agree is always else inputs_type.dims_agree
+    fields, new = set(inputs_type.model_fields), inputs_type.__new__
     shared = _shared(inputs_type, outputs_type)
 
     def invoke(values: Values, context: Context, state: State) -> Mapping[str, Any]:  # noqa: ARG001 - one form
-        try:
-            agree(values)
-        except ValueError as error:
-            raise ModuleError.of("VI402", f"its inputs do not fit each other: {error}") from None
+        if agree is not None:
+            _fit_each_other(agree, values)
         inputs = new(inputs_type)
         _set_values(inputs, values)
         _set_fields(inputs, fields)
@@ -56,6 +56,13 @@ def invoke_module(module: type[AnyModule], params: Any) -> Invoke:
         return given
 
     return invoke
+
+
+def _fit_each_other(agree: Callable[[Values], None], values: Values) -> None:
+    try:
+        agree(values)
+    except ValueError as error:
+        raise ModuleError.of("VI402", f"its inputs do not fit each other: {error}") from None
 
 
 def _alike(source: PortSpec, target: PortSpec, dims: tuple[_Dim, ...]) -> Check:

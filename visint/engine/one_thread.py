@@ -27,19 +27,21 @@ class _OneThread:
         self._runs = 0
         self._imported = 0
         self._libraries: list[Any] = []
-        self._threads: list[int] = []
+        self._limited: list[tuple[Any, int]] = []
         self._variables: Mapping[str, str | None] = {}
 
     def __enter__(self) -> None:
         with self._lock:
             self._runs += 1
             if self._runs == 1:
-                self._variables = {name: os.environ.get(name) for name in _VARIABLES}
-                for name in _VARIABLES:
+                before = ((name, os.environ.get(name)) for name in _VARIABLES)
+                self._variables = {name: value for name, value in before if value != "1"}
+                for name in self._variables:
                     os.putenv(name, "1")  # what a library sees; Python's own view of it stays
                 self._look()
-                self._threads = [library.get_num_threads() for library in self._libraries]
-                for library in self._libraries:
+                threads = ((library, library.get_num_threads()) for library in self._libraries)
+                self._limited = [(library, count) for library, count in threads if count != 1]
+                for library, _ in self._limited:
                     library.set_num_threads(1)
 
     def __exit__(
@@ -48,7 +50,7 @@ class _OneThread:
         with self._lock:
             self._runs -= 1
             if self._runs == 0:
-                for library, threads in zip(self._libraries, self._threads, strict=True):
+                for library, threads in self._limited:
                     library.set_num_threads(threads)
                 for name, value in self._variables.items():
                     if value is None:

@@ -4,7 +4,8 @@
 * Graphs are built, compiled and run a few times before the clock starts; then whole runs are timed, from the
   call with the image to the result in hand, and divided by nodes or turns. An engine without loops is called
   once a turn with the result of the turn before.
-* The median says what to expect, the least what the engine costs where nothing else wants the processor.
+* Each is given the same seconds, in three rounds. The median says what to expect, the least what the engine
+  costs where nothing else wants the processor.
 * **import**: all that building and running takes, numpy apart, which they all need.
 """
 
@@ -20,10 +21,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-__all__ = ["NODES", "Asked", "asked", "image_of", "measured", "seconds", "told"]
+__all__ = ["Asked", "asked", "image_of", "measured", "seconds", "told"]
 
-NODES = 4
-"""Of the loop."""
+ROUNDS = 3
 
 Run = Callable[[], object]
 Build = Callable[..., Run]
@@ -55,32 +55,35 @@ def image_of(size: int) -> Any:
 
 
 def seconds(run: Run, budget: float) -> list[float]:
-    """Of each of 3 to 300 runs, as many as the budget allows, after two that do not count."""
+    """Of each of three runs or more, as many as fit into ``budget`` seconds, after one that does not count."""
     run()
-    begun = time.perf_counter()
-    run()
-    most = int(min(300, max(3, budget / max(time.perf_counter() - begun, 1e-9))))
-    return [_one(run) for _ in range(most)]
-
-
-def _one(run: Run) -> float:
-    begun = time.perf_counter()
-    run()
-    return time.perf_counter() - begun
+    each: list[float] = []
+    ends = time.perf_counter() + budget
+    while len(each) < 3 or time.perf_counter() < ends:
+        begun = time.perf_counter()
+        run()
+        each.append(time.perf_counter() - begun)
+    return each
 
 
 def measured(chain: Build, loop: Build, wanted: Asked) -> dict[str, Any]:
     """Microseconds a node by length of the chain, and a turn: the median and the least.
 
     ``chain(nodes, image)`` and ``loop(turns, image)`` build a graph and give a function that runs it once
-    and returns the image that came out.
+    and returns the image that came out. They are timed in three rounds, for a machine has its moods.
     """
     image = image_of(wanted.size)
-    found: dict[str, Any] = {"node": {}, "turn": None}
-    for nodes in wanted.chains:
-        found["node"][str(nodes)] = _spread(_sound(chain(nodes, image), image), nodes, wanted.budget)
-    found["turn"] = _spread(_sound(loop(wanted.turns, image), image), wanted.turns, wanted.budget)
-    return found
+    runs = {str(nodes): (nodes, _sound(chain(nodes, image), image)) for nodes in wanted.chains}
+    runs["turn"] = wanted.turns, _sound(loop(wanted.turns, image), image)
+    each: dict[str, list[float]] = {name: [] for name in runs}
+    for _ in range(ROUNDS):
+        for name, (parts, run) in runs.items():
+            each[name] += [one / parts * 1e6 for one in seconds(run, wanted.budget / ROUNDS)]
+    spread = {
+        name: {"median": statistics.median(all_), "least": min(all_), "runs": len(all_)}
+        for name, all_ in each.items()
+    }
+    return {"turn": spread.pop("turn"), "node": spread}
 
 
 def _sound(run: Run, image: Any) -> Run:
@@ -89,11 +92,6 @@ def _sound(run: Run, image: Any) -> Run:
     if np.shape(given) != image.shape or not np.array_equal(given, image):
         raise ValueError("the image did not come out as it went in")
     return run
-
-
-def _spread(run: Run, parts: int, budget: float) -> dict[str, float]:
-    each = [one / parts * 1e6 for one in seconds(run, budget)]
-    return {"median": statistics.median(each), "least": min(each), "runs": len(each)}
 
 
 def told(load: Callable[[], str], chain: Build, loop: Build) -> None:

@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -42,7 +43,6 @@ class TestRelay(ModuleContract):
 class TestStopwatch:
     def test_counts_whole_runs_by_nodes_and_turns(self):
         """An engine that sleeps a millisecond a node and two a turn is found to do so."""
-        import time
 
         def asleep(milliseconds, image):
             def run():
@@ -56,9 +56,9 @@ class TestStopwatch:
         assert 1000 <= found["node"]["5"]["least"] <= found["node"]["5"]["median"] < 4000
         assert 2000 <= found["turn"]["least"] < 8000
 
-    def test_three_to_three_hundred_runs(self):
-        """However slow or quick a run is."""
-        assert len(stopwatch.seconds(lambda: None, 1.0)) == 300
+    def test_three_runs_or_as_many_as_fit_into_the_budget(self):
+        """Slow and quick engines are given the same time."""
+        assert len(stopwatch.seconds(lambda: time.sleep(0.001), 0.02)) in range(3, 21)
         assert len(stopwatch.seconds(lambda: None, 0.0)) == 3
 
     def test_an_engine_that_does_nothing_is_no_engine(self):
