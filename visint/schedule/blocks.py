@@ -26,18 +26,18 @@ class Blocks:
         The bound graph.
     loops
         The loop each node runs in.
-    keys
-        The structural key of each node, which decides among items that wait for nothing.
+    ranks
+        The rank of each node, which decides among items that wait for nothing.
     wires
         Nodes joined by their in-edges.
     """
 
     def __init__(
-        self, graph: Graph, loops: Mapping[str, str | None], keys: Mapping[str, int], wires: nx.DiGraph
+        self, graph: Graph, loops: Mapping[str, str | None], ranks: Mapping[str, int], wires: nx.DiGraph
     ) -> None:
         self._graph = graph
         self.loops = loops
-        self._keys = keys
+        self._ranks = ranks
         self._digraphs = self._contracted(wires)
         self._items = {loop: self._sorted(digraph) for loop, digraph in self._digraphs.items()}
         self._index = {loop: {item: i for i, item in enumerate(items)} for loop, items in self._items.items()}
@@ -59,13 +59,13 @@ class Blocks:
         return digraphs
 
     def _sorted(self, digraph: nx.DiGraph) -> list[ItemName]:
-        return list(nx.lexicographical_topological_sort(digraph, key=lambda item: (self._key(item), item)))
+        return list(nx.lexicographical_topological_sort(digraph, key=lambda item: (self._rank(item), item)))
 
-    def _key(self, item: ItemName) -> int:
+    def _rank(self, item: ItemName) -> int:
         what, name = item
         if what == "node":
-            return self._keys[name]
-        inner = sorted(self._keys[node] for node, loop in self.loops.items() if name in self.chain(loop))
+            return self._ranks[name]
+        inner = sorted(self._ranks[node] for node, loop in self.loops.items() if name in self.chain(loop))
         return int.from_bytes(blake2b(repr(inner).encode(), digest_size=8).digest(), "big")
 
     def chain(self, loop: str | None) -> tuple[str, ...]:

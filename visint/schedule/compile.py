@@ -10,7 +10,7 @@ import networkx as nx
 from visint.graph.graph import INPUTS, Graph
 from visint.schedule.blocks import Blocks
 from visint.schedule.layout import Layout
-from visint.schedule.order import effective_loops, structural_keys, waits, wires
+from visint.schedule.order import effective_loops, ranks, structural_keys, waits, wires
 from visint.schedule.steps import Block, Item, Pyramid, Repeat, Schedule, Step
 
 __all__ = ["compile_graph"]
@@ -41,7 +41,7 @@ def _compile(same: _Same) -> Schedule:
     order = list(nx.topological_sort(joined))
     keys = structural_keys(graph, order)
     loops = effective_loops(graph, order)
-    blocks = Blocks(graph, loops, keys, waits(graph, joined, loops))
+    blocks = Blocks(graph, loops, ranks(graph, order, keys), waits(graph, joined, loops))
     layout = Layout(graph, blocks)
     for name in order:
         layout.add_node(name)

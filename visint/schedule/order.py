@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from hashlib import blake2b
-from typing import Any
+from typing import Any, NamedTuple
 
 import networkx as nx
 from pydantic import BaseModel
@@ -13,7 +13,7 @@ from pydantic import BaseModel
 from visint.graph.graph import INPUTS, Edge, Feedback, Graph, Node
 from visint.graph.spec import LoopSpec
 
-__all__ = ["effective_loops", "structural_keys", "waits", "wires"]
+__all__ = ["effective_loops", "ranks", "structural_keys", "waits", "wires"]
 
 
 def wires(graph: Graph) -> nx.DiGraph:
@@ -61,6 +61,60 @@ def _key(graph: Graph, node: Node, keys: Mapping[str, int], known: Mapping[str, 
         text.extend(f"{port}<{_source(edge, keys)}" for edge in sources)
     for port, feedback in sorted(node.feedback.items()):
         text.append(f"{port}@{_fed_back(feedback, known, keys)}")
+    return _hashed(text)
+
+
+def ranks(graph: Graph, order: Sequence[str], keys: Mapping[str, int]) -> Mapping[str, int]:
+    """A number for each node that also follows from what it feeds: what decides among nodes that may run now.
+
+    Nodes with equal structural ``keys`` do the same, yet a loop may wait for one and not for the other; by
+    keys alone their names would then decide when the loop runs.
+    """
+    readers: dict[str, list[_Reader]] = {name: [] for name in graph.nodes}
+    for source, reader in _readers(graph):
+        if source != INPUTS:
+            readers[source].append(reader)
+    seen = {name: f"{keys[name]} {_read_at_the_end(graph, name)}" for name in graph.nodes}
+    found = dict(keys)
+    for _ in range(2):
+        known = dict(found)  # feedback is read a turn later: of its readers the round before counts
+        for name in reversed(order):
+            marks = [f"{one.how} {(known if one.later else found)[one.name]}" for one in readers[name]]
+            found[name] = _hashed([seen[name], *sorted(marks)])
+    return found
+
+
+class _Reader(NamedTuple):
+    """Who reads a node, through which ports, and whether only a turn later."""
+
+    name: str
+    how: str
+    later: bool = False
+
+
+def _readers(graph: Graph) -> Iterator[tuple[str, _Reader]]:
+    for name, node in graph.nodes.items():
+        for port, edge in node.edges():
+            yield edge.source.node, _Reader(name, f"{edge.source.port}>{port}")
+        for port, feedback in node.feedback.items():
+            source = feedback.edge.source
+            yield source.node, _Reader(name, f"{source.port}@{port}", later=True)
+            if isinstance(feedback.start, Edge):
+                yield feedback.start.source.node, _Reader(name, f"{feedback.start.source.port}^{port}")
+
+
+def _read_at_the_end(graph: Graph, name: str) -> str:
+    """The graph's outputs and the ends of loops that read ``name``."""
+    ends = [
+        f"{edge.source.port} {output}" for output, edge in graph.outputs.items() if edge.source.node == name
+    ]
+    for loop in graph.loops.values():
+        watched = (loop.until.change_of, loop.until.holds) if loop.until else ()
+        ends += [f"{edge.source.port} until" for edge in watched if edge and edge.source.node == name]
+    return repr(sorted(ends))
+
+
+def _hashed(text: Iterable[str]) -> int:
     return int.from_bytes(blake2b("\n".join(text).encode(), digest_size=8).digest(), "big")
 
 
