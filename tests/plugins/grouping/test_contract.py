@@ -1,0 +1,41 @@
+"""Every module of the plugin keeps the contract."""
+
+from __future__ import annotations
+
+from visint_grouping.canny import Canny as CannyModule
+from visint_grouping.depth_edges import DepthEdges as DepthEdgesModule
+from visint_grouping.diffuse import Diffuse as DiffuseModule
+from visint_grouping.edges_of import EdgesOf as EdgesOfModule
+from visint_grouping.perceptual import Perceptual as PerceptualModule
+from visint_grouping.split_merge import SplitMerge as SplitMergeModule
+from visint_grouping.voronoi import Voronoi as VoronoiModule
+
+from visint.testing import ModuleContract
+
+
+class TestCanny(ModuleContract):
+    module = CannyModule
+
+
+class TestDepthEdges(ModuleContract):
+    module = DepthEdgesModule
+
+
+class TestDiffuse(ModuleContract):
+    module = DiffuseModule
+
+
+class TestEdgesOf(ModuleContract):
+    module = EdgesOfModule
+
+
+class TestPerceptual(ModuleContract):
+    module = PerceptualModule
+
+
+class TestSplitMerge(ModuleContract):
+    module = SplitMergeModule
+
+
+class TestVoronoi(ModuleContract):
+    module = VoronoiModule
