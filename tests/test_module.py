@@ -38,7 +38,7 @@ class Everything(Ports):
     many: tuple[DepthEvidence, ...] = ()
     own: Own | None = None
     list_of_lights: tuple[Light, ...] = ()
-    distances: Scalars[Array, "K"] | None = None  # noqa: F821, UP037 - a dim
+    distances: Scalars[Array, "K"] | None = None
 
 
 def image(rows, columns):

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from visint.fields.light import Light as Light
     from visint.graph import Builder as Builder
     from visint.graph import Graph as Graph
+    from visint.graph.alter import alter as alter
     from visint.graph.load import load as load
     from visint.hookspecs import hookimpl as hookimpl
     from visint.module import CONTRACT as CONTRACT
@@ -59,6 +60,7 @@ _HOME = {
     "UsageError": "errors",
     "VisintError": "errors",
     "hookimpl": "hookspecs",
+    "alter": "graph",
     "load": "graph",
     "run": "engine",
 }

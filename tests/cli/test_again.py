@@ -50,6 +50,17 @@ def test_settings_and_options_are_kept(visint, pair, tmp_path, files):
     assert {name for name in one if one[name] != two[name]} <= CHANGES
 
 
+def test_where_it_stopped_and_started_is_kept(visint, former, pair, tmp_path, files, mine, refused):
+    """``--stop-after`` holds again; a run that started from a map wants that map."""
+    assert visint("run", "stereo_sgm", *pair.images, "--stop-after", "match", "--out", "one").code == 0
+    assert json.loads((tmp_path / "one/run.json").read_text())["stop_after"] == "match"
+    assert visint("run", "one/run.json", "--out", "two").code == 0
+    one, two = files.contents(tmp_path / "one"), files.contents(tmp_path / "two")
+    assert {name for name in one if one[name] != two[name]} <= CHANGES
+    spoil(mine, start={"depth": "0" * 64})
+    assert "--from DIR" in refused(3, "run", mine / "run.json", "--out", "again")
+
+
 def test_options_now_go_before_those_then(visint, former, pair, tmp_path):
     options = ["--right", pair.left, "--seed", 9, "--set", "match.speckle=7"]
     assert visint("run", former / "run.json", *options, "--out", "out").code == 0

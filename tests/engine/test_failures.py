@@ -202,16 +202,26 @@ outputs: {{pen: pen.image, witness: witness.image}}
         assert image.flags.writeable
 
     def test_inputs_that_do_not_fit_each_other_are_told_at_the_node(self, stage, image):
-        """A half-size image beside a full-size one in a list is refused before the module sees it."""
+        """A half-size image of a node beside a full-size one is refused before the module sees them."""
+        text = """
+inputs: {left: Image, right: Image}
+nodes:
+  same: {uses: toy.image, in: {image: inputs.right}}
+  mean: {uses: toy.stack, in: {images: [inputs.left, same.image]}}
+outputs: {out: mean.image}
+"""
         with pytest.raises(ModuleError, match=r"VI402 node 'mean', toy.stack.*H is 21 .* but 10"):
-            stage.run(
-                """
+            stage.run(text, {"left": image, "right": image[:10]})
+
+    def test_graph_inputs_that_meet_in_a_node_are_compared_before_anything_runs(self, stage, image):
+        """Sizes of inputs that one node takes must agree: the input's fault, not a plugin's."""
+        text = """
 inputs: {left: Image, right: Image}
 nodes: {mean: {uses: toy.stack, in: {images: [inputs.left, inputs.right]}}}
 outputs: {out: mean.image}
-""",
-                {"left": image, "right": image[:10]},
-            )
+"""
+        with pytest.raises(InputError, match="VI307: the inputs 'left' and 'right' are of different sizes"):
+            stage.run(text, {"left": image, "right": image[:10]})
 
 
 class TestAfterwards:

@@ -38,7 +38,7 @@ def test_a_folder_is_made_with_its_parents(tmp_path):
     visint.io.make_folder(tmp_path / "a" / "b")
     assert (tmp_path / "a" / "b").is_dir()
     (tmp_path / "file").touch()
-    with pytest.raises(visint.OutputError, match="VI601 .*file"):
+    with pytest.raises(visint.OutputError, match=r"VI601 .*file"):
         visint.io.make_folder(tmp_path / "file")
 
 

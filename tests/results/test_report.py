@@ -172,7 +172,10 @@ class TestPictures:
 
     def test_large_pictures_are_reduced(self, toys):
         page = report(toys.run(toys.CUE, image=np.full((30, 2600), 0.5, np.float32)))
-        assert {picture.shape[1] for _, picture in toys.pictures(page)} == {1280, 480}  # evidence is shown small
+        assert {picture.shape[1] for _, picture in toys.pictures(page)} == {
+            1280,
+            480,
+        }  # evidence is shown small
 
     def test_720p_stays_below_three_megabytes(self, met):
         """Noise everywhere is the worst that can come: pictures are reduced until the page fits."""

@@ -16,11 +16,13 @@ __all__ = ["Former", "former"]
 
 
 class Former(NamedTuple):
-    """A former run: its graph, its seed, and what its record tells of its inputs."""
+    """A former run: its graph, seed, last node, the fields it started from, and what its inputs were."""
 
     path: Path
     graph: Graph
     seed: int
+    stop_after: str
+    start: Mapping[str, str]
     inputs: Mapping[str, Mapping[str, Any]]
 
     def sources(self, given: Mapping[str, Source]) -> dict[str, Source]:
@@ -85,7 +87,8 @@ def former(path: Path) -> Former:
     source = parse_data(record["graph"], str(path))
     graph = bind(source.spec, installed(), source.places)
     inputs = {name: told for name, told in record["inputs"].items() if told.get("sha256") != ABSENT}
-    return Former(path, graph, record["seed"], inputs)
+    stop_after, start = record.get("stop_after") or "", record.get("start") or {}
+    return Former(path, graph, record["seed"], stop_after, start, inputs)
 
 
 def _is_record(record: Any) -> bool:
@@ -95,6 +98,8 @@ def _is_record(record: Any) -> bool:
         and isinstance(record.get("seed"), int)
         and isinstance(record.get("inputs"), dict)
         and all(isinstance(told, dict) for told in record["inputs"].values())
+        and isinstance(record.get("stop_after"), str | None)
+        and isinstance(record.get("start", {}), dict)
     )
 
 

@@ -13,9 +13,10 @@ import typer
 from visint.cli.given import Given, settings
 from visint.cli.interrupt import interruptible, undoable
 from visint.cli.progress import progress
-from visint.errors import OutputError, UsageError
+from visint.errors import InputError, OutputError, UsageError
 
 if TYPE_CHECKING:
+    from visint.cli.again import Former
     from visint.engine import Options
     from visint.graph import Graph
     from visint.results import Result, Source
@@ -75,8 +76,8 @@ def command(  # noqa: PLR0913, PLR0917 - the options of a command line are many,
     options = Options(
         seed=seed if seed is not None else before.seed if before else 0,
         threads=threads,
-        stop_after=stop_after or None,
-        start=_start(bound, start),
+        stop_after=stop_after or (before.stop_after if before else "") or None,
+        start=_start(bound, start, before),
         observers=(profile,) if trace else (),
     )
     said: list[tuple[str, str]] = []
@@ -109,11 +110,13 @@ def _writable(folder: Path) -> None:
         raise OutputError.of("VI601", found, where=str(folder))
 
 
-def _start(graph: Graph, folder: str) -> dict[str, Any]:
+def _start(graph: Graph, folder: str, before: Former | None) -> dict[str, Any]:
     """The fields of the map that a former run left: depth, and boundaries if it has them."""
     from visint import io
 
     if not folder:
+        if before and before.start:
+            raise InputError.of("VI304", "that run started from a former map", write="--from DIR")
         return {}
     if graph.spec.hub is None:
         raise UsageError.of("VI701", f"--from starts a map, and the graph {graph.name!r} has no hub")

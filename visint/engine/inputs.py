@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
 from visint import io
 from visint.arrays import ArraySpec
-from visint.errors import InputError
+from visint.errors import InputError, Problem
 from visint.fields.camera import Camera
-from visint.graph.graph import Graph
+from visint.graph.graph import INPUTS, Graph, Node
 from visint.graph.spec import InputSpec
 from visint.names import did_you_mean, listed
 
-__all__ = ["accept", "accept_value", "camera_of", "size_of"]
+__all__ = ["accept", "accept_value", "camera_of", "misfits", "size_of"]
 
 
 def accept(graph: Graph, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -128,9 +128,46 @@ def camera_of(values: Mapping[str, Any]) -> Camera | None:
 
 
 def _fit_each_other(graph: Graph, values: Mapping[str, Any]) -> None:
+    problems = misfits(graph, values)
+    if problems:
+        raise InputError(problems)
     camera, size = camera_of(values), size_of(graph, values)
     if size is not None and min(size) == 0:
         raise InputError.of("VI305", f"the images are empty: {size[0]} × {size[1]} pixels")
     if camera is not None and size is not None and camera.size != size:
         found = f"the camera is of {camera.width} × {camera.height} pixels, the images of {size[1]} × {size[0]}"
         raise InputError.of("VI307", found)
+
+
+def misfits(graph: Graph, values: Mapping[str, Any]) -> list[Problem]:
+    """Maps of pixels that meet in a node, and are not of one size."""
+    found: dict[str, None] = {}
+    several = len(set(_shapes(values))) > 1  # else there is no need to go through the nodes at every run
+    for node in graph.nodes.values() if several else ():
+        sizes = dict(_sizes(node, values))
+        for name, size in sizes.items():
+            first, wanted = next(iter(sizes.items()))
+            if size != wanted:
+                said = f"{wanted[1]} × {wanted[0]} and {size[1]} × {size[0]} pixels"
+                found[f"the inputs {first!r} and {name!r} are of different sizes: {said}"] = None
+    return [Problem("VI307", one, fault="input") for one in found]
+
+
+def _shapes(values: Mapping[str, Any]) -> Iterator[tuple[int, ...]]:
+    for value in values.values():
+        for one in value if isinstance(value, tuple) else (value,):
+            if isinstance(one, np.ndarray):
+                yield one.shape[:2]
+
+
+def _sizes(node: Node, values: Mapping[str, Any]) -> Iterator[tuple[str, tuple[int, int]]]:
+    for port, edge in node.edges():
+        spec = node.callee.inputs.get(port)
+        array = spec.array if spec else None
+        if edge.source.node != INPUTS or array is None or array.dims[:2] != ("H", "W"):
+            continue
+        name, value = edge.source.port, values.get(edge.source.port)
+        if isinstance(value, tuple):
+            yield from ((f"{name}[{i}]", one.shape[:2]) for i, one in enumerate(value))
+        elif value is not None:
+            yield name, value.shape[:2]

@@ -86,6 +86,7 @@ def run(
         state.tell(RunFinished(graph.name, perf_counter() - started, failed=not finished))
     if options.threads > 1 or graph.loops:  # else the order of time is the order of the nodes
         state.record.in_order(graph.loops, names)
+    state.record.stop_after, state.record.start = options.stop_after, options.start
     return _result(schedule, state, values, perf_counter() - started)
 
 

@@ -7,10 +7,11 @@ from functools import partial
 from typing import Any
 
 from visint import io
+from visint.engine.inputs import misfits
 from visint.errors import InputError, Problem, UsageError
 from visint.fields.camera import Camera
 from visint.fields.light import Light
-from visint.graph.graph import INPUTS, Graph, Node
+from visint.graph.graph import Graph
 from visint.graph.spec import InputSpec
 from visint.io.files import silent
 from visint.names import did_you_mean, listed
@@ -48,7 +49,7 @@ def read_sources(graph: Graph, sources: Mapping[str, Source], say: Say | None = 
             values[name] = _read(name, graph.inputs[name], sources[name], values, say)
         except InputError as error:
             problems += error.problems
-    problems += _misfits(graph, values)
+    problems += misfits(graph, values)
     if problems:
         raise InputError(problems)
     return values
@@ -74,32 +75,6 @@ def _missing(graph: Graph, sources: Mapping[str, Source]) -> Iterator[Problem]:
         if name not in sources and not spec.optional:
             write = _SHORT.get(name, f"--in {name}=PATH")
             yield Problem("VI304", f"the input {name!r} ({spec}) is missing", write=write, fault="input")
-
-
-def _misfits(graph: Graph, values: Mapping[str, Any]) -> list[Problem]:
-    """Maps of pixels that meet in a node, and are not of one size."""
-    found: dict[str, None] = {}
-    for node in graph.nodes.values():
-        sizes = dict(_sizes(node, values))
-        for name, size in sizes.items():
-            first, wanted = next(iter(sizes.items()))
-            if size != wanted:
-                said = f"{wanted[1]} × {wanted[0]} and {size[1]} × {size[0]} pixels"
-                found[f"the inputs {first!r} and {name!r} are of different sizes: {said}"] = None
-    return [Problem("VI307", one, fault="input") for one in found]
-
-
-def _sizes(node: Node, values: Mapping[str, Any]) -> Iterator[tuple[str, tuple[int, int]]]:
-    for port, edge in node.edges():
-        spec = node.callee.inputs.get(port)
-        array = spec.array if spec else None
-        if edge.source.node != INPUTS or array is None or array.dims[:2] != ("H", "W"):
-            continue
-        name, value = edge.source.port, values.get(edge.source.port)
-        if isinstance(value, tuple):
-            yield from ((f"{name}[{i}]", one.shape[:2]) for i, one in enumerate(value))
-        elif value is not None:
-            yield name, value.shape[:2]
 
 
 def _read(name: str, spec: InputSpec, source: Source, values: Mapping[str, Any], say: Say | None) -> Any:

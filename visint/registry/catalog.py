@@ -140,11 +140,12 @@ def _graph_files() -> dict[str, dict[str, Path]]:
 
 
 def _folders(entry: Entry) -> Iterator[Path]:
-    """Where the folder of an entry point may lie: beside the installed package, else in the checkout."""
+    """Where an entry point's folder may lie: in the checkout that runs, else beside the installed package."""
     parts = entry.target.value.split(".")
+    checkout = Path(__file__).parents[2]
+    if entry.distribution == "visint" and (checkout / "pyproject.toml").is_file():
+        yield checkout / "graphs"
     yield from (Path(place, *parts) for place in sys.path if place and Path(place, *parts).is_dir())
-    if entry.distribution == "visint":
-        yield Path(__file__).parents[2] / "graphs"
 
 
 @lru_cache(maxsize=4)

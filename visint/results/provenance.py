@@ -53,6 +53,8 @@ def provenance(result: Result, sources: Mapping[str, Source]) -> dict[str, Any]:
         "graph": graph.spec.plain(),
         "graph_hash": _sha(graph.to_yaml().encode()),
         "seed": result.seed,
+        "stop_after": result.record.stop_after,
+        "start": {name: _digest(value) for name, value in result.record.start.items()},
         "inputs": {name: _input(value, sources.get(name)) for name, value in result.inputs.items()},
         "outputs": {name: _output(result, name) for name in result.outputs},
         "modules": modules(graph),

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 __all__ = ["Measure", "Reason", "Record", "Stop", "Timing", "Turn", "Warned"]
 
@@ -61,12 +61,14 @@ class Timing(NamedTuple):
 
 @dataclass(slots=True)
 class Record:
-    """Everything of the above, as one run fills it."""
+    """Everything of the above, as one run fills it; where it was told to stop, and the map it started from."""
 
     turns: list[Turn] = field(default_factory=list)
     stops: list[Stop] = field(default_factory=list)
     warnings: list[Warned] = field(default_factory=list)
     measures: list[Measure] = field(default_factory=list)
+    stop_after: str | None = None
+    start: Mapping[str, Any] = field(default_factory=dict)
     seconds: dict[tuple[str, int], list[float]] = field(default_factory=lambda: defaultdict(lambda: [0, 0.0]))
 
     def timings(self) -> Iterator[Timing]:
