@@ -1,7 +1,5 @@
 """Toy modules on images: what goes through levels, lists and relaxation."""
 
-# ruff: noqa: ARG002 - the contract says what run takes, needed or not
-
 from __future__ import annotations
 
 import numpy as np

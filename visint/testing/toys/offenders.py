@@ -1,7 +1,5 @@
 """Toy modules that do what a module must not: the engine has to notice, and to name them."""
 
-# ruff: noqa: ARG002 - the contract says what run takes, needed or not
-
 from __future__ import annotations
 
 from typing import Any, Literal

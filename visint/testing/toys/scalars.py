@@ -1,7 +1,5 @@
 """Toy modules on single numbers: enough for every law of scheduling."""
 
-# ruff: noqa: ARG002 - the contract says what run takes, needed or not
-
 from __future__ import annotations
 
 from visint.module import Context, Module, Params, Ports

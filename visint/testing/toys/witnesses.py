@@ -1,7 +1,5 @@
 """Toy modules that show what the engine told them, or speak up through the context."""
 
-# ruff: noqa: ARG002 - the contract says what run takes, needed or not
-
 from __future__ import annotations
 
 import time
