@@ -165,13 +165,12 @@ def test_chapter_four_counts_its_calls():
         "shade": 8,
     }
     assert {level for node, level, _ in calls if node == "shade"} == {0, 1}
-    order = [node for node, _, _ in calls]
-    assert order.index("normals") == len(order) - 1
-    last_of_first_level = max(i for i, (node, level, _) in enumerate(calls) if level == 2)
-    assert {node for node, _, _ in calls[last_of_first_level - 1 : last_of_first_level + 1]} == {
-        "features",
-        "label",
-    }
+    at = {call: i for i, call in enumerate(calls)}
+    assert at["normals", 0, 0] > at["couple", 0, 3]
+    for level in (2, 1, 0):
+        assert at["barriers", level, 0] < at["features", level, 0] < at["label", level, 0]
+        assert at["couple", level, 3] < at["features", level, 0]
+    assert at["label", 2, 0] < at["match", 1, 0]
 
 
 def test_spokes_commit_in_order():

@@ -44,9 +44,9 @@ def _entries(distribution: Distribution, group: str) -> list[Entry]:
         points = distribution.entry_points.select(group=group)
         if not points:
             return []
-        about = distribution.metadata
-        version = about["Version"] if "Version" in about else ""  # noqa: SIM401 - metadata have no get
-        name = about["Name"] if "Name" in about else "unknown"  # noqa: SIM401 - a message has no get that mypy knows
+        metadata = distribution.metadata  # has no get
+        about = {key: metadata[key] for key in ("Name", "Version") if key in metadata}
+        name, version = about.get("Name", "unknown"), about.get("Version", "")
         return [Entry(point.name, point, name, version) for point in points]
     except (OSError, TypeError, ValueError, LookupError):
         return []
