@@ -60,9 +60,11 @@ def steps(levels: Array, weights: Array) -> tuple[Array, Array]:
     return np.asarray(right)[:, :-1], np.asarray(lower)[:-1]
 
 
-def along(lines: Array) -> tuple[Array, Array]:
-    """float32: 1 for the cracks that have a pixel of ``lines`` (bool (H, W)) within a pixel, as ``steps``."""
+def along(lines: Array, *, loosely: bool) -> tuple[Array, Array]:
+    """float32: 1 for the cracks beside a pixel of ``lines`` (bool (H, W)), or ``loosely`` one pixel further."""
     import cv2
 
-    wide = cv2.dilate(lines.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(np.float32)
+    wide = lines.astype(np.float32)
+    if loosely:
+        wide = np.asarray(cv2.dilate(wide, np.ones((3, 3), np.uint8)))
     return np.maximum(wide[:, :-1], wide[:, 1:]), np.maximum(wide[:-1], wide[1:])

@@ -84,8 +84,8 @@ class Perceptual(Module[PerceptualParams, GroupingInputs, GroupingOutputs]):
         """For each segmentation what it says of every crack, and what that is worth."""
         said, worth = [], []
         for name, line in scene.lines.items():
-            right, lower = along(line)
             counts = name in ("edges", "regions")
+            right, lower = along(line, loosely=counts)
             said.append((right - 0.5, lower - 0.5) if counts else (right, lower))
             worth.append(getattr(self.params, name) * (echo if counts else 1.0))
         return said, worth

@@ -83,6 +83,7 @@ class Voronoi(Module[VoronoiParams, GroupingInputs, GroupingOutputs]):
         coherence = sum(votes.values(), np.zeros(lines.shape, np.float32)) / np.float32(max(len(votes), 1))
         coherence = np.where(links > 0, links, coherence)
         regions = _closed(lines, self.params.smallest / ctx.scale**2)
+        lines = lines | (regions == 0)
         ctx.measure("regions", int(regions.max(initial=0)))
         support = {**votes, "extension": lines & ~chosen & (links == 0), "link": links > 0}
         return answer(lines, regions, coherence, support)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from visint.testing import ModuleContract
 from visint_grouping.canny import Canny as CannyModule
 from visint_grouping.depth_edges import DepthEdges as DepthEdgesModule
 from visint_grouping.diffuse import Diffuse as DiffuseModule
@@ -9,8 +10,6 @@ from visint_grouping.edges_of import EdgesOf as EdgesOfModule
 from visint_grouping.perceptual import Perceptual as PerceptualModule
 from visint_grouping.split_merge import SplitMerge as SplitMergeModule
 from visint_grouping.voronoi import Voronoi as VoronoiModule
-
-from visint.testing import ModuleContract
 
 
 class TestCanny(ModuleContract):

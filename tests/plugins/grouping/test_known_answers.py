@@ -5,13 +5,13 @@ from __future__ import annotations
 import cv2
 import numpy as np
 import pytest
+
+from visint.module import Context
 from visint_grouping.gestalt import Weights, coherence, costs, voronoi_neighbours
 from visint_grouping.perceptual import Perceptual
 from visint_grouping.spoke import SOURCES, GroupingInputs
 from visint_grouping.strokes import sites, stroked
 from visint_grouping.voronoi import Voronoi, VoronoiParams
-
-from visint.module import Context
 
 LINK = SOURCES.index("link")
 
@@ -71,7 +71,7 @@ def test_a_square_with_a_missing_corner_closes():
 
 
 def test_a_link_over_even_ground_is_refused():
-    """The same collinear segments, but where the gap is both sides are one region: no contrast, no link."""
+    """The same collinear segments, but at the gap both sides are one region: no contrast, no link."""
     image, regions = halves(48)
     image[:, 52:68], regions[:, 52:68] = 0.5, 3
     found = linked(image, drawn((47, 10, 47, 54), (47, 65, 47, 118)), regions, extension=0, least=0.3)
@@ -80,7 +80,7 @@ def test_a_link_over_even_ground_is_refused():
 
 
 def test_extension_goes_where_two_agree():
-    """An edge goes on in a faint one that was not selected, and regions change there too: the gap is extended."""
+    """Beyond a gap of 3 px the edge goes on, and regions change all along: the end is extended."""
     image, regions = halves(48)
     edges = drawn((47, 10, 47, 60), (47, 64, 47, 110))
     found = linked(image, edges, regions, least=1.0)
@@ -89,7 +89,7 @@ def test_extension_goes_where_two_agree():
 
 
 def test_coherence_is_the_share_that_agrees():
-    """Eq. 5.19: with edges and regions taking part, where both agree 1; of the depth, which is flat, no word."""
+    """Eq. 5.19: where edges and regions, which alone take part, agree it is 1; flat depth has no say."""
     image, regions = halves(48)
     edges = drawn((47, 0, 47, 127))
     depth = np.full(image.shape, 20, np.float32)
@@ -148,7 +148,7 @@ def test_corners_are_sites():
 
 @pytest.mark.parametrize("noise", [0.0, 0.04])
 def test_basins_merge_to_the_two_halves(noise):
-    """One step of brightness, with and without noise: two regions, the boundary at the step, all of it closed."""
+    """One step of brightness, with and without noise: two regions, the boundary at the step."""
     image, _ = halves(48)
     image = image + np.random.default_rng(1).normal(0, noise, image.shape).astype(np.float32)
     found = Perceptual().run(GroupingInputs(image=image.clip(0, 1)), Context())
