@@ -351,3 +351,18 @@ outputs: {sum: sum.sum}
     for thread in threads:
         thread.join()
     assert sums == {x: 50.0 * x for x in range(4)}
+
+
+def test_opencv_takes_one_thread_while_a_run_goes_on():
+    """Other numbers of threads may give other last bits; afterwards it is as it was."""
+    cv2 = pytest.importorskip("cv2")
+    from visint.engine.one_thread import ONE_THREAD
+
+    before = cv2.getNumThreads()
+    try:
+        cv2.setNumThreads(2)
+        with ONE_THREAD:
+            assert cv2.getNumThreads() == 1
+        assert cv2.getNumThreads() == 2
+    finally:
+        cv2.setNumThreads(before)

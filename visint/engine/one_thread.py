@@ -1,4 +1,4 @@
-"""One BLAS thread while anything runs: other numbers of threads give other last bits."""
+"""One BLAS and OpenCV thread while anything runs: other numbers of threads give other last bits."""
 
 from __future__ import annotations
 
@@ -12,6 +12,16 @@ from typing import Any
 __all__ = ["ONE_THREAD"]
 
 _VARIABLES = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "OPENCV_FOR_THREADS_NUM")
+
+
+class _OpenCV:
+    """OpenCV, spoken to as threadpoolctl speaks to a BLAS."""
+
+    def get_num_threads(self) -> int:
+        return int(sys.modules["cv2"].getNumThreads())
+
+    def set_num_threads(self, count: int) -> None:
+        sys.modules["cv2"].setNumThreads(count)
 
 
 class _OneThread:
@@ -63,6 +73,8 @@ class _OneThread:
 
         if self._imported != len(sys.modules):
             self._libraries = ThreadpoolController().select(user_api="blas").lib_controllers
+            if "cv2" in sys.modules:
+                self._libraries.append(_OpenCV())
             self._imported = len(sys.modules)
 
 
