@@ -385,8 +385,8 @@ outputs: {note: note.value, mean: mean.image}
         assert dict(result) == {}
         assert own.calls == [("see", 2, 0)]
 
-    def test_feedback_of_a_limited_node_restarts_at_none(self, own, image):
-        """A counter that pauses at level 1 has nothing to go on from at level 0."""
+    def test_feedback_of_a_limited_node_waits(self, own, image):
+        """A counter that pauses at level 1 goes on at level 0 from where it was."""
         result = own.run(
             """
 inputs: {left: Image}
@@ -396,7 +396,21 @@ outputs: {count: count.value}
 """,
             {"left": image},
         )
-        assert result["count"] == 1
+        assert result["count"] == 2
+
+    def test_a_limited_node_has_its_start_where_it_first_runs(self, own, image):
+        """Not only at the coarsest level, which it sits out."""
+        result = own.run(
+            """
+inputs: {left: Image}
+loops: {levels: {over: pyramid, levels: 3}}
+nodes:
+  count: {uses: toy.counter, loop: levels, levels: [0, 1], feedback: {value: {from: count.value, start: 5}}}
+outputs: {count: count.value}
+""",
+            {"left": image},
+        )
+        assert result["count"] == 7
 
     def test_a_missing_list_is_empty(self, own, image):
         """A list that a limited node would give is an empty list elsewhere, never None."""

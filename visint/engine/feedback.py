@@ -60,9 +60,10 @@ def _no_size(port: PortSpec) -> InputError:
 
 
 def carry(state: State, cells: Iterable[Cell], level: int) -> None:
-    """At the end of a turn: every cell gets what its source holds, all at once."""
+    """At the end of a turn: every cell whose source runs at this level gets what it holds, all at once."""
     slots, begun = state.slots, state.begun
-    for slot, value in [(cell.slot, slots[cell.source]) for cell in cells]:
+    fed = [(c.slot, slots[c.source]) for c in cells if c.levels is None or level in c.levels]
+    for slot, value in fed:
         slots[slot] = value
         begun[slot] = level
 

@@ -157,7 +157,11 @@ class Layout:
         else:
             start = feedback.start
         spec = self.graph.nodes[name].callee.inputs[port]
-        self.cells.append(Cell(cell, source, feedback.loop, spec, feedback.edge.kind, start, feedback.restart))
+        giver = self.graph.nodes.get(feedback.edge.source.node)
+        levels = giver.levels if giver else None
+        self.cells.append(
+            Cell(cell, source, feedback.loop, spec, feedback.edge.kind, start, feedback.restart, levels)
+        )
         return self._fitted(cell, feedback.edge, spot[0], feedback.loop)
 
     def _looped(self) -> set[str]:

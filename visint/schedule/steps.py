@@ -42,7 +42,8 @@ class Cell:
     """A feedback edge: ``slot`` gets what ``source`` holds at the end of each turn of ``loop``.
 
     ``start`` is None, a number, ``"plane"`` or the slot of a value; ``restart`` a loop at whose turns it
-    starts anew. ``carry`` is the kind by whose rule the value goes from level to level.
+    starts anew. ``carry`` is the kind by whose rule the value goes from level to level. Where the source
+    is limited to some ``levels``, the cell keeps what it has at the others.
     """
 
     slot: Slot
@@ -52,6 +53,7 @@ class Cell:
     carry: FieldKind
     start: float | str | Start | None = None
     restart: str | None = None
+    levels: tuple[int, ...] | None = None
 
 
 class Start(NamedTuple):
