@@ -1,0 +1,46 @@
+"""The answer: what the patches said, put together."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from visint.arrays import Array
+from visint.fields import NormalsEvidence
+from visint_texture.surface.estimate import Estimate
+from visint_texture.surface.judgement import judged
+from visint_texture.surface.patches import Box
+from visint_texture.surface.sites import Sites, spread_out
+
+__all__ = ["Answer"]
+
+
+class Answer:
+    """What the regions said, put together at the sites."""
+
+    def __init__(self, normals: Array, sigma: Array, reliability: Array, clarity: Array) -> None:
+        self.normals = normals
+        self.sigma = sigma
+        self.reliability = reliability
+        self.clarity = clarity
+
+    @classmethod
+    def empty(cls, shape: tuple[int, int]) -> Answer:
+        """Silence at sites of ``shape`` (R, C)."""
+        facing = np.broadcast_to(np.array([0.0, 0.0, -1.0]), (*shape, 3)).copy()
+        return cls(facing, np.ones(shape), np.zeros(shape), np.zeros(shape))
+
+    def take(self, sites: Sites, estimate: Estimate, box: Box, inside: Array) -> None:
+        """One patch's estimate, where it is ``inside`` its box."""
+        sigma, reliability = judged(sites, estimate)
+        self.normals[box][inside] = estimate.normals[inside]
+        self.sigma[box][inside] = sigma[inside]
+        self.reliability[box][inside] = reliability[inside]
+        self.clarity[box][inside] = estimate.clarity[inside]
+
+    def over(self, size: tuple[int, int], texture: Array) -> tuple[NormalsEvidence, Array]:
+        """Evidence and ambiguity (H, W) over an image of ``size``; silent where ``texture`` is 0."""
+        normals = spread_out(self.normals, size)
+        normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), np.float32(1e-6))
+        reliability = spread_out(self.reliability, size) * (texture > 0)
+        evidence = NormalsEvidence.of(normals, spread_out(self.sigma, size), reliability)
+        return evidence, np.clip(1 - spread_out(self.clarity, size), 0, 1)

@@ -1,0 +1,58 @@
+"""How far a region's estimate is to be believed: the tests of its own assumptions."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from visint.arrays import Array
+from visint_texture.geometry.orientation import slant_and_tilt
+from visint_texture.surface.estimate import Estimate
+from visint_texture.surface.sites import Sites
+
+__all__ = ["judged"]
+
+FEWEST = 12
+"""A region of fewer sites says nothing."""
+WINDOWS = 5.0
+"""A window covers about 25 sites, so a region's own spread understates its error by about five."""
+
+
+def judged(sites: Sites, estimate: Estimate) -> tuple[Array, Array]:
+    """(sigma in radians, reliability in [0, 1]), each (R, C).
+
+    Homogeneity: what the surface leaves of the moments. Two dimensions: a texture of stripes shows its own
+    direction, not the surface's, and is not believed. Neighbours: each site alone against the surface that
+    all make together. Information: how much a turn of the surface would have changed the moments.
+    """
+    if np.count_nonzero(sites.weight > 0) < FEWEST:
+        return np.ones(sites.shape), np.zeros(sites.shape)
+    left = np.sqrt(_around((estimate.residual**2).sum(axis=-1), sites.weight))
+    apart = np.sqrt(_around(estimate.disagreement**2, sites.weight))
+    sigma = _sigma(estimate, left)
+    stripes = np.clip((1.8 - estimate.eccentricity) / 0.6, 0, 1)
+    gates = (
+        np.exp(-((left / 0.45) ** 2)),
+        np.exp(-((apart / np.deg2rad(35)) ** 2)),
+        np.exp(-((sigma / np.deg2rad(25)) ** 2)),
+        np.broadcast_to(stripes, sites.shape),
+    )
+    return sigma, np.clip(sites.weight, 0, 1) * np.multiply.reduce(gates)
+
+
+def _sigma(estimate: Estimate, left: Array) -> Array:
+    """Of a plane, its own; of a relief, the residual over how steeply moments change with slant."""
+    if estimate.sigma > 0:
+        return np.full(left.shape, np.clip(WINDOWS * estimate.sigma, 0.01, 1.5))
+    slant, _ = slant_and_tilt(estimate.normals)
+    steepness = np.sqrt(np.minimum(np.tan(slant), 3) ** 2 + 0.3)
+    return np.clip(0.6 * left / steepness, 0.03, 1.5)
+
+
+def _around(field: Array, weight: Array) -> Array:
+    """The weighted mean over each site and its eight neighbours."""
+    import cv2
+
+    total = cv2.boxFilter(weight, -1, (3, 3), borderType=cv2.BORDER_REFLECT)
+    return np.asarray(
+        cv2.boxFilter(field * weight, -1, (3, 3), borderType=cv2.BORDER_REFLECT) / np.maximum(total, 1e-9)
+    )
