@@ -232,13 +232,14 @@ def _price(rule, length, sums, a, b, numbers, work, right):
     if rule == BY_MEANS:
         step = abs(a[1] / a[0] - b[1] / b[0])
         return step / (numbers[0] + numbers[1] * np.sqrt(1 / a[0] + 1 / b[0]))
+    step = min(abs(sums[0]), abs(sums[1])) / length if sums[0] * sums[1] > 0 else 0.0
     if rule == BY_STEP:
-        step = min(abs(sums[0]), abs(sums[1])) / length if sums[0] * sums[1] > 0 else 0.0
         chance = numbers[0] + numbers[1] / np.sqrt(length)
     else:
         less = min(a[0], b[0])
         apart = _misfit(a, b, 0.0, work, right) + _misfit(b, a, 0.0, work, right)
-        step = np.sqrt(max(_misfit(a, b, 1.0, work, right) - apart, 0.0) / less)
+        misfit = np.sqrt(max(_misfit(a, b, 1.0, work, right) - apart, 0.0) / less)
+        step = (misfit + step) / 2
         chance = numbers[0] + numbers[1] / np.sqrt(less)
     for j in range(2, sums.size):
         step += numbers[j] * sums[j] / length

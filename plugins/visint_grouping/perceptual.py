@@ -15,6 +15,7 @@ __all__ = ["Perceptual", "PerceptualParams"]
 
 ACROSS = 4
 """Pixels on either side of a crack whose mean brightness is compared; one more where a slope is fitted."""
+Cracks = list[tuple[Array, Array]]
 ECHO = 0.1
 """How much votes of edges and regions count in the second merging, where shading explains what they see."""
 
@@ -36,8 +37,8 @@ class PerceptualParams(Params):
         What it is worth that depth jumps there, or that the map has a boundary already. Nothing is lost
         without. Much worth for the map keeps what was once said.
     shading
-        Grey levels by which two regions may leave a common parabola of brightness and are still one surface.
-        More joins the bands into which a shaded surface falls, and faint neighbours. 0 joins none.
+        Grey levels by which two regions may leave a common parabola of brightness, and step at their border (the
+        mean of both), and are still one surface. More joins the bands into which a shaded surface falls, and faint neighbours. 0 joins none.
     smallest
         Area in full-size pixels below which a region joins the neighbour it is most like.
     """
@@ -48,7 +49,7 @@ class PerceptualParams(Params):
     regions: float = Field(default=20.0, ge=0)
     depth: float = Field(default=60.0, ge=0)
     map: float = Field(default=10.0, ge=0)
-    shading: float = Field(default=6.0, ge=0)
+    shading: float = Field(default=8.0, ge=0)
     smallest: float = Field(default=40.0, ge=0)
 
 
@@ -72,17 +73,21 @@ class Perceptual(Module[PerceptualParams, GroupingInputs, GroupingOutputs]):
         ctx.check()
         labels, count = basins(scene.brightness.levels, scene.brightness.noise, scene.lines.values())
         ctx.check()
-        labels, count = self._by_step(scene, labels, count)
-        labels, count = self._by_shading(scene, labels, count, ctx.scale)
+        levels = scene.brightness.levels
+        across = [steps(levels, taps(ACROSS, sloped=False)), steps(levels, taps(ACROSS + 1, sloped=True))]
+        labels, count = self._by_step(scene, across, labels, count)
+        ctx.check()
+        labels, count = self._by_shading(scene, across, labels, count, ctx.scale)
         ctx.measure("regions", count)
         boundaries, regions = separated(labels)
         votes = {name: near(line, 1) for name, line in scene.lines.items()}
         coherence = sum(votes.values(), boundaries.astype(np.float32)) / np.float32(len(votes) + 1)
         return answer(boundaries, regions, coherence, votes)
 
-    def _votes(self, scene: Scene, echo: float = 1.0) -> tuple[list[tuple[Array, Array]], list[float]]:
+    def _votes(self, scene: Scene, echo: float = 1.0) -> tuple[Cracks, list[float]]:
         """For each segmentation what it says of every crack, and what that is worth."""
-        said, worth = [], []
+        said: Cracks = []
+        worth = []
         for name, line in scene.lines.items():
             counts = name in ("edges", "regions")
             right, lower = along(line, loosely=counts)
@@ -90,30 +95,28 @@ class Perceptual(Module[PerceptualParams, GroupingInputs, GroupingOutputs]):
             worth.append(getattr(self.params, name) * (echo if counts else 1.0))
         return said, worth
 
-    def _by_step(self, scene: Scene, labels: Array, count: int) -> tuple[Array, int]:
+    def _by_step(self, scene: Scene, across: Cracks, labels: Array, count: int) -> tuple[Array, int]:
         """Merges over arcs with too little step of brightness, votes counted in."""
         from visint_grouping import _kernels
 
-        levels, noise = scene.brightness
-        bare = taps(ACROSS, sloped=False)
-        across = [steps(levels, bare), steps(levels, taps(ACROSS + 1, sloped=True))]
         said, worth = self._votes(scene)
         arcs = arcs_of(labels, [*across, *said], signed=2)
-        chance = self.params.chance * noise * float(np.linalg.norm(bare))
+        chance = self.params.chance * scene.brightness.noise * np.sqrt(2 / ACROSS)
         numbers = np.array([self.params.contrast, chance, *worth])
         home = _kernels.merge(*arcs, 2, np.zeros((count, 1)), _kernels.BY_STEP, numbers)
         return united(labels, home)
 
-    def _by_shading(self, scene: Scene, labels: Array, count: int, scale: int) -> tuple[Array, int]:
-        """Merges regions that one parabola of brightness fits about as well as two do."""
+    def _by_shading(
+        self, scene: Scene, across: Cracks, labels: Array, count: int, scale: int
+    ) -> tuple[Array, int]:
+        """Merges regions that one parabola of brightness fits about as well as two, without a step between."""
         from visint_grouping import _kernels
 
         levels, noise = scene.brightness
         if self.params.shading == 0:
             return labels, count
         said, worth = self._votes(scene, ECHO)
-        nothing = (np.zeros_like(levels[:, 1:]), np.zeros_like(levels[1:]))
-        arcs = arcs_of(labels, [nothing, nothing, *said], signed=2)
+        arcs = arcs_of(labels, [*across, *said], signed=2)
         regional = np.zeros((count, 22))
         _kernels.moments(labels, levels, regional)
         numbers = np.array([self.params.shading, 4 * noise, *worth, self.params.smallest / scale**2])

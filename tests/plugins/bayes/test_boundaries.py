@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
-from visint_bayes.boundaries import Boundaries, BoundariesInputs, BoundariesParams
 
 from visint.fields import BoundariesEvidence
 from visint.module import Context
 from visint.testing import ModuleContract
+from visint_bayes.boundaries import Boundaries, BoundariesInputs, BoundariesParams
 
 
 class TestContract(ModuleContract):
