@@ -37,8 +37,9 @@ class PerceptualParams(Params):
         What it is worth that depth jumps there, or that the map has a boundary already. Nothing is lost
         without. Much worth for the map keeps what was once said.
     shading
-        Grey levels by which two regions may leave a common parabola of brightness, and step at their border (the
-        mean of both), and are still one surface. More joins the bands into which a shaded surface falls, and faint neighbours. 0 joins none.
+        Grey levels by which two regions may leave a common parabola of brightness, and step at their border
+        (the mean of both), and still be one surface. More joins the bands into which a shaded surface falls,
+        and faint neighbours. 0 joins none.
     smallest
         Area in full-size pixels below which a region joins the neighbour it is most like.
     """

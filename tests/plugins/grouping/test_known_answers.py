@@ -10,7 +10,7 @@ from visint.module import Context
 from visint_grouping.gestalt import Weights, coherence, costs, voronoi_neighbours
 from visint_grouping.perceptual import Perceptual
 from visint_grouping.spoke import SOURCES, GroupingInputs
-from visint_grouping.strokes import sites, stroked
+from visint_grouping.strokes import sites, stroked, thinned
 from visint_grouping.voronoi import Voronoi, VoronoiParams
 
 LINK = SOURCES.index("link")
@@ -135,6 +135,19 @@ def test_voronoi_neighbours_see_each_other():
     assert not pairs & {(0, 3), (1, 2)}
     row = np.array([[0, 3], [0, 1], [0, 9], [0, 5.0]])
     assert {tuple(pair) for pair in voronoi_neighbours(row).tolist()} == {(0, 1), (0, 3), (2, 3)}
+
+
+def test_thinning_keeps_lines():
+    """Lines two and three pixels thick in any direction become one pixel thick, a pixel or two shorter."""
+    for end in ((20, 100), (80, 30), (80, 100), (50, 100)):
+        thick = np.zeros((96, 128), np.uint8)
+        cv2.line(thick, (30, 20), end[::-1], 1, 3)
+        found = thinned(thick > 0)
+        length = max(abs(end[0] - 20), abs(end[1] - 30)) + 1
+        assert length - 6 <= found.sum() <= 1.3 * length + 4
+    ring = drawn((20, 20, 20, 60), (20, 60, 60, 60), (60, 60, 60, 20), (60, 20, 20, 20))
+    _, labels = cv2.connectedComponents((~thinned(ring)).astype(np.uint8), connectivity=4)
+    assert labels[0, 0] != labels[40, 40]
 
 
 def test_corners_are_sites():
