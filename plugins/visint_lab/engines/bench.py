@@ -25,9 +25,9 @@ def engines(peer: Sequence[str] | None, out: Path | None, asked: Asked | None = 
     columns, table = head(asked.chains), rows(found, asked.chains)
     print(aligned(columns, table) + "\n\n" + "\n".join(notes(found, asked.chains, asked.size)))
     if out is not None:
-        from visint.io import write_text
+        from visint.io import make_folder, write_text
 
-        out.mkdir(parents=True, exist_ok=True)
+        make_folder(out)
         write_text(out / "engines.csv", as_csv(columns, table))
 
 

@@ -14,8 +14,8 @@ def load() -> str:
     os.environ["DO_NOT_TRACK"] = "1"
     import kedro
     from kedro.io import DataCatalog, MemoryDataset  # noqa: F401 - timed
-    from kedro.pipeline import node, pipeline  # noqa: F401
-    from kedro.runner import SequentialRunner  # noqa: F401
+    from kedro.pipeline import node, pipeline  # noqa: F401 - timed
+    from kedro.runner import SequentialRunner  # noqa: F401 - timed
 
     logging.getLogger("kedro").setLevel(logging.ERROR)
     return str(kedro.__version__)
