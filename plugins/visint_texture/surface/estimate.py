@@ -14,7 +14,7 @@ from visint_texture.geometry.tangent import Positions, normal_of_slopes
 from visint_texture.geometry.viewing import normal_candidates
 from visint_texture.surface.plane import best_plane
 from visint_texture.surface.reference import anchor_at
-from visint_texture.surface.relief import Anchor, fitted, integrated
+from visint_texture.surface.relief import Anchor, Relief, anchored_plane, fitted, integrated
 from visint_texture.surface.sites import Sites
 
 __all__ = ["Estimate", "Stiffness", "as_plane", "from_reference"]
@@ -51,8 +51,8 @@ def from_reference(
     """Every site against the one at ``place``, whose normal ``known`` (3,) is given.
 
     Each site's four candidates are weighed against ``expected`` (R, C, 3), the map's normals (NaN: the
-    reference's); the chosen ones, made one smooth surface, and
-    the map's own start a fit to all moments at once, of which the better is kept.
+    reference's); the chosen ones, made one smooth surface, and the map's own are two starts of a fit to all
+    moments at once, and the better is kept: or the plane through the reference, where it explains as much.
     """
     anchor = anchor_at(sites, place, known)
     flat = ~known_at(expected)
@@ -60,8 +60,11 @@ def from_reference(
     start = integrated(sites, guess, np.where(flat, 0.1, 1.0), anchor, stiffness.bend)
     chosen, clarity = _chosen(sites, start, anchor, guess)
     own = integrated(sites, chosen, sites.weight * (0.2 + clarity), anchor, stiffness.bend)
-    reliefs = [fitted(sites, corners, anchor, stiffness.bend, stiffness.rounds) for corners in (start, own)]
-    relief = min(reliefs, key=lambda one: one.cost)
+    flat_one = anchored_plane(sites, anchor)
+    bent = (fitted(sites, corners, anchor, stiffness.bend, stiffness.rounds) for corners in (start, own))
+    relief = min(bent, key=lambda one: one.cost)
+    if _plain_enough(sites, flat_one, relief):
+        relief = flat_one
     normals, anchor = relief.normals(sites), replace(anchor, surface=relief.surface)
     alone, _ = _alone(sites, relief.w, anchor, normals)
     return Estimate(
@@ -83,6 +86,12 @@ def as_plane(sites: Sites) -> Estimate:
     return Estimate(
         normals, residual, _eccentricity(plane.surface), _angle(alone, normals), np.ones(sites.shape), spread
     )
+
+
+def _plain_enough(sites: Sites, plane: Relief, bent: Relief) -> bool:
+    """Whether the reference's plane explains the moments, or a bent surface not much better."""
+    total, of_plane, of_bent = sites.weight.sum(), plane.misfit(sites), bent.misfit(sites)
+    return bool(of_plane < 0.1 * total and of_plane < 1.5 * of_bent + 0.01 * total)
 
 
 def _chosen(sites: Sites, corners: Array, anchor: Anchor, expected: Array) -> tuple[Array, Array]:

@@ -15,6 +15,8 @@ FEWEST = 12
 """A region of fewer sites says nothing."""
 WINDOWS = 5.0
 """A window covers about 25 sites, so a region's own spread understates its error by about five."""
+WAVES = 0.1
+"""Radians by which a texture whose waves are a site's spacing long may be off, fewer waves being seen."""
 
 
 def judged(sites: Sites, estimate: Estimate) -> tuple[Array, Array]:
@@ -28,24 +30,30 @@ def judged(sites: Sites, estimate: Estimate) -> tuple[Array, Array]:
         return np.ones(sites.shape), np.zeros(sites.shape)
     left = np.sqrt(_around((estimate.residual**2).sum(axis=-1), sites.weight))
     apart = np.sqrt(_around(estimate.disagreement**2, sites.weight))
-    sigma = _sigma(estimate, left)
+    sigma = _sigma(estimate, left, _wavelength(sites))
     stripes = np.clip((1.8 - estimate.eccentricity) / 0.6, 0, 1)
     gates = (
-        np.exp(-((left / 0.45) ** 2)),
-        np.exp(-((apart / np.deg2rad(35)) ** 2)),
+        np.exp(-((left / 0.7) ** 2)),
+        np.exp(-((apart / np.deg2rad(50)) ** 2)),
         np.exp(-((sigma / np.deg2rad(25)) ** 2)),
         np.broadcast_to(stripes, sites.shape),
     )
     return sigma, np.clip(sites.weight, 0, 1) * np.multiply.reduce(gates)
 
 
-def _sigma(estimate: Estimate, left: Array) -> Array:
-    """Of a plane, its own; of a relief, the residual over how steeply moments change with slant."""
+def _sigma(estimate: Estimate, left: Array, wave: float) -> Array:
+    """Of a plane, its own and what long waves add; of a relief, the residual over what a slant would change."""
     if estimate.sigma > 0:
-        return np.full(left.shape, np.clip(WINDOWS * estimate.sigma, 0.01, 1.5))
+        return np.full(left.shape, np.clip(WINDOWS * estimate.sigma + WAVES * wave, 0.01, 1.5))
     slant, _ = slant_and_tilt(estimate.normals)
     steepness = np.sqrt(np.minimum(np.tan(slant), 3) ** 2 + 0.3)
     return np.clip(0.6 * left / steepness, 0.03, 1.5)
+
+
+def _wavelength(sites: Sites) -> float:
+    """The texture's middle wavelength over the spacing of the sites."""
+    spread = (sites.moments[..., 0] + sites.moments[..., 2])[sites.weight > 0]
+    return float(1 / (np.sqrt(np.median(spread)) * max(sites.spacing)))
 
 
 def _around(field: Array, weight: Array) -> Array:
@@ -53,6 +61,5 @@ def _around(field: Array, weight: Array) -> Array:
     import cv2
 
     total = cv2.boxFilter(weight, -1, (3, 3), borderType=cv2.BORDER_REFLECT)
-    return np.asarray(
-        cv2.boxFilter(field * weight, -1, (3, 3), borderType=cv2.BORDER_REFLECT) / np.maximum(total, 1e-9)
-    )
+    mean = cv2.boxFilter(field * weight, -1, (3, 3), borderType=cv2.BORDER_REFLECT) / np.maximum(total, 1e-9)
+    return np.maximum(mean, 0)  # running sums leave tiny negative ones

@@ -11,7 +11,7 @@ from visint_texture.geometry.tangent import normal_of_slopes, slopes_of_normal, 
 from visint_texture.surface.banded import Corners, plate
 from visint_texture.surface.sites import Sites
 
-__all__ = ["Anchor", "Relief", "fitted", "integrated"]
+__all__ = ["Anchor", "Relief", "anchored_plane", "fitted", "integrated"]
 
 SPREAD = 0.35
 """Log moments that differ by more than this from the reference's count less and less."""
@@ -45,6 +45,10 @@ class Relief:
     surface: Array
     cost: float = 0.0
 
+    def misfit(self, sites: Sites) -> float:
+        """What of the moments it does not explain, smoothness aside."""
+        return _misfit(sites, (self.residual**2).sum(axis=-1))
+
     def normals(self, sites: Sites) -> Array:
         """Unit normals (R, C, 3)."""
         return normal_of_slopes(sites.at, self.a, self.b)
@@ -60,6 +64,17 @@ def integrated(sites: Sites, normals: Array, trust: Array, anchor: Anchor, bend:
     return np.maximum(system.solved(), LEAST)
 
 
+def anchored_plane(sites: Sites, anchor: Anchor) -> Relief:
+    """The plane through the reference: w = 1 + a dU + b dV, with the log moments that all sites have on it."""
+    here = (sites.at.across[anchor.place], sites.at.down[anchor.place])
+    rise = anchor.slopes[0] * (sites.at.across - here[0]) + anchor.slopes[1] * (sites.at.down - here[1])
+    w = np.maximum(1 + rise, LEAST)
+    a, b = anchor.slopes[0] / w, anchor.slopes[1] / w
+    relief = Relief(w, a, b, _left(sites, w, a, b, anchor), anchor.surface)
+    change = _common(sites, relief)
+    return replace(relief, residual=relief.residual - change, surface=anchor.surface + change)
+
+
 def fitted(sites: Sites, start: Array, anchor: Anchor, bend: float, rounds: int) -> Relief:
     """The surface near ``start`` (R+1, C+1) on which the log moments are the reference's (Gauss-Newton).
 
@@ -69,13 +84,14 @@ def fitted(sites: Sites, start: Array, anchor: Anchor, bend: float, rounds: int)
     for _ in range(rounds):
         anchor, best = _shared(sites, corners, anchor, bend)
         aim = _step(sites, corners, anchor, bend)
+        before = best
         for share in (1.0, 0.4):
             tried = np.maximum(corners + share * (aim - corners), LEAST)
             cost = _cost(sites, tried, anchor, bend)
             if cost < best:
                 corners, best = tried, cost
                 break
-        else:
+        if best > 0.98 * before:
             break
     return replace(_relief(sites, corners, anchor), cost=best)
 
@@ -85,29 +101,38 @@ def _shared(sites: Sites, corners: Array, anchor: Anchor, bend: float) -> tuple[
 
     The reference's own moments are as noisy as any; its orientation is what is known.
     """
-    relief = _relief(sites, corners, anchor)
-    trust = sites.weight / (1 + (relief.residual**2).sum(axis=-1) / SPREAD**2)
-    change = (trust[..., None] * relief.residual).sum(axis=(0, 1)) / (trust.sum() + OWN)
-    shared = replace(anchor, surface=anchor.surface + change)
+    shared = replace(anchor, surface=anchor.surface + _common(sites, _relief(sites, corners, anchor)))
     return shared, _cost(sites, corners, shared, bend)
+
+
+def _common(sites: Sites, relief: Relief) -> Array:
+    """What the residuals have in common, (3,), the reference's own counting as several sites."""
+    trust = sites.weight / (1 + (relief.residual**2).sum(axis=-1) / SPREAD**2)
+    return np.asarray((trust[..., None] * relief.residual).sum(axis=(0, 1)) / (trust.sum() + OWN))
 
 
 def _relief(sites: Sites, corners: Array, anchor: Anchor) -> Relief:
     w, across, down = Corners(sites.shape, sites.spacing).at_cells(corners)
     w = np.maximum(w, LEAST)
     a, b = across / w, down / w
-    return Relief(
-        w, a, b, surface_log_moments(sites.moments, sites.at, w, a, b) - anchor.surface, anchor.surface
-    )
+    return Relief(w, a, b, _left(sites, w, a, b, anchor), anchor.surface)
+
+
+def _left(sites: Sites, w: Array, a: Array, b: Array, anchor: Anchor) -> Array:
+    return surface_log_moments(sites.moments, sites.at, w, a, b) - anchor.surface
 
 
 def _cost(sites: Sites, corners: Array, anchor: Anchor, bend: float) -> float:
     squares = (_relief(sites, corners, anchor).residual ** 2).sum(axis=-1)
-    data = (sites.weight * np.log1p(squares / SPREAD**2)).sum() * SPREAD**2
+    data = _misfit(sites, squares)
     across = np.diff(corners, 2, axis=1) ** 2
     down = np.diff(corners, 2, axis=0) ** 2
     twist = 2 * np.diff(np.diff(corners, axis=0), axis=1) ** 2
     return float(data + _stiffness(sites, bend) * (across.sum() + down.sum() + twist.sum()))
+
+
+def _misfit(sites: Sites, squares: Array) -> float:
+    return float((sites.weight * np.log1p(squares / SPREAD**2)).sum() * SPREAD**2)
 
 
 def _stiffness(sites: Sites, bend: float) -> float:
