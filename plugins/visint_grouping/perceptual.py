@@ -45,9 +45,9 @@ class PerceptualParams(Params):
     """
 
     contrast: float = Field(default=6.0, gt=0)
-    chance: float = Field(default=4.0, ge=0)
-    edges: float = Field(default=20.0, ge=0)
-    regions: float = Field(default=20.0, ge=0)
+    chance: float = Field(default=3.0, ge=0)
+    edges: float = Field(default=25.0, ge=0)
+    regions: float = Field(default=30.0, ge=0)
     depth: float = Field(default=60.0, ge=0)
     map: float = Field(default=10.0, ge=0)
     shading: float = Field(default=8.0, ge=0)

@@ -121,7 +121,7 @@ def test_the_whole_is_better_than_its_parts(shaded, capsys):
         for noise, row in table.items():
             means = {method: rows.mean(axis=0) for method, rows in row.items()}
             worst = float((row["whole"][:, 0] - row["edges"][:, 0]).min())
-            text = "  ".join(f"{method} {f:.3f} {vi:.2f}" for method, (f, vi) in means.items())
+            text = "  ".join(f"{method} {f:.4f} {vi:.3f}" for method, (f, vi) in means.items())
             print(f"\n{'shaded' if shaded else 'flat'} {noise}: {text}  whole - edges at worst {worst:+.3f}")
     for row in table.values():
         f = {method: rows[:, 0].mean() for method, rows in row.items()}
