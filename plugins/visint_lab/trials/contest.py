@@ -56,8 +56,12 @@ def entrants(systems: Sequence[str], peers: Sequence[str], floor: bool = True) -
     """Systems (graphs) first, then peers by name, then the constant plane."""
     found = [_system(name) for name in systems] + [_peer(name) for name in peers]
     if floor:
-        found.append(Entrant("constant plane", lambda pair, light: constant_plane(pair)))  # noqa: ARG005
+        found.append(Entrant("constant plane", _floor))
     return tuple(found)
+
+
+def _floor(pair: Pair, light: visint.Light | None) -> Reconstruction:  # noqa: ARG001 - the form of a runner
+    return constant_plane(pair)
 
 
 def _system(name: str) -> Entrant:
