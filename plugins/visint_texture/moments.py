@@ -73,8 +73,8 @@ class MomentsOutputs(Ports):
 class Moments(Module[MomentsParams, MomentsInputs, MomentsOutputs]):
     """Second moments of the local spectrum: how fine a texture is, and along which direction.
 
-    B. J. Super and A. C. Bovik, Shape from texture using local spectral moments, PAMI 17(4), 1995,
-    doi:10.1109/34.368191. Gabor filters and their derivatives, filtered in the plane of frequencies; or the
+    B. J. Super and A. C. Bovik, Shape from texture using local spectral moments, PAMI 17(4), 1995.
+    Gabor filters and their derivatives, filtered in the plane of frequencies; or the
     structure tensor (Bigün and Granlund 1987). The image is divided by its local mean first.
 
     Assumes that nothing but albedo changes within a window. Depends on the image alone: keep it out of

@@ -74,8 +74,8 @@ class SuperBovikOutputs(Ports):
 class SuperBovik(Module[SuperBovikParams, SuperBovikInputs, SuperBovikOutputs]):
     """Normals from the moments of a homogeneous texture and one site of known orientation.
 
-    B. J. Super and A. C. Bovik, Shape from texture using local spectral moments, PAMI 17(4), 1995,
-    doi:10.1109/34.368191; Eqs. 5.85 to 5.93 of section 5.2.4 in their corrected reading. In each region
+    B. J. Super and A. C. Bovik, Shape from texture using local spectral moments, PAMI 17(4), 1995.
+    Eqs. 5.85 to 5.93 of section 5.2.4 in their corrected reading. In each region
     the reference is where map and texture are surest; slant and four candidate tilts follow at each site
     about its own ray, the map's normals choose, and one smooth perspective surface is fitted to all moments.
     Without a reference a region is one plane, found from its density gradient and then from all moments.

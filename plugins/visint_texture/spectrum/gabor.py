@@ -79,8 +79,7 @@ def gabor_moments(
     """Moments (g_x, 2E[u_x u_y], g_y) of contrast ``image`` (H, W), one sample every ``step`` px.
 
     Each filter's own mean of u uᵀ comes from its derivative filters, so the bank's spacing is not felt.
-    B. J. Super and A. C. Bovik, Shape from texture using local spectral moments, PAMI 17(4), 1995,
-    doi:10.1109/34.368191.
+    B. J. Super and A. C. Bovik, Shape from texture using local spectral moments, PAMI 17(4), 1995.
     """
     import cv2
 
