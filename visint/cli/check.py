@@ -11,7 +11,7 @@ from visint.errors import GraphError, VisintError
 
 __all__ = ["EXAMPLES", "command"]
 
-EXAMPLES = "Examples: visint check joint;  visint check mine.yaml;  visint check mine.yaml --json"
+EXAMPLES = "Examples: visint check stereo_sgm;  visint check mine.yaml;  visint check mine.yaml --json"
 
 
 def command(

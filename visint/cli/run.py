@@ -25,7 +25,7 @@ __all__ = ["EXAMPLES", "command"]
 
 EXAMPLES = (
     "Examples: visint run stereo_sgm --left l.png --right r.png --calib calib.txt --out out;  "
-    "visint run mine.yaml --in image=a.png --out out --set match.window=7;  visint run out/run.json --out again"
+    "visint run mine.yaml --in image=a.png --out out --set match.speckle=50;  visint run out/run.json --out again"
 )
 
 
@@ -34,20 +34,29 @@ def command(  # noqa: PLR0913, PLR0917 - the options of a command line are many,
     out: Annotated[
         Path, typer.Option(readable=False, help="The folder for the results: new, empty, or a former run.")
     ],
-    left: Annotated[str, typer.Option(help="The left (reference) image.")] = "",
-    right: Annotated[str, typer.Option(help="The right image.")] = "",
-    calib: Annotated[str, typer.Option(help="The calibration file (Middlebury calib.txt).")] = "",
+    left: Annotated[str, typer.Option(help="The left (reference) image of a rectified pair.")] = "",
+    right: Annotated[str, typer.Option(help="The right image, of the same size.")] = "",
+    calib: Annotated[
+        str, typer.Option(help="The calibration file (Middlebury calib.txt); gives camera and range.")
+    ] = "",
     light: Annotated[str, typer.Option(help="Direction to a distant light, x,y,z.")] = "",
     light_at: Annotated[str, typer.Option(help="Position of a light, x,y,z, in the baseline's unit.")] = "",
-    disparity_range: Annotated[str, typer.Option(help="Search range a,b in pixels.")] = "",
-    in_: Annotated[list[str] | None, typer.Option("--in", help="NAME=PATH, any input; repeatable.")] = None,
+    disparity_range: Annotated[
+        str, typer.Option(help="Search range a,b in pixels; without --calib, depth is relative.")
+    ] = "",
+    in_: Annotated[
+        list[str] | None,
+        typer.Option("--in", help="NAME=PATH, any input; repeatable, also for a list; numbers as .npy."),
+    ] = None,
     gamma: Annotated[
         float | None, typer.Option(help="Exponent of the images; 1 is linear. Default: sRGB for 8 bits.")
     ] = None,
-    set_: Annotated[list[str] | None, typer.Option("--set", help="NODE.PARAM=VALUE.")] = None,
-    without: Annotated[list[str] | None, typer.Option(help="A spoke to leave out.")] = None,
+    set_: Annotated[list[str] | None, typer.Option("--set", help="NODE.PARAM=VALUE; repeatable.")] = None,
+    without: Annotated[
+        list[str] | None, typer.Option(help="A spoke of the hub to leave out; repeatable.")
+    ] = None,
     control: Annotated[str, typer.Option(help="One of the graph's controls.")] = "",
-    stop_after: Annotated[str, typer.Option(help="The node to stop after.")] = "",
+    stop_after: Annotated[str, typer.Option(help="The node to stop after; later outputs are left out.")] = "",
     start: Annotated[str, typer.Option("--from", help="A former run whose map to start from.")] = "",
     seed: Annotated[int | None, typer.Option(help="Seed of random numbers.  [default: 0]")] = None,
     threads: Annotated[int, typer.Option(min=1, help="Nodes that may run side by side.")] = 1,

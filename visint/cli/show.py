@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 __all__ = ["EXAMPLES", "command"]
 
 EXAMPLES = (
-    "Examples: visint show joint;  visint show joint --expand > plain.yaml;  "
-    "visint show joint --html > joint.html"
+    "Examples: visint show stereo;  visint show mine.yaml --expand > plain.yaml;  "
+    "visint show stereo --html > stereo.html"
 )
 
 
@@ -62,9 +62,16 @@ def _block(block: Block, indent: str) -> Iterator[str]:
             yield from _step(item, indent)
         else:
             spec = item.loop.spec.model_dump(exclude_defaults=True, by_alias=True)
-            told = ", ".join(f"{key}: {value}" for key, value in spec.items() if key != "inside")
+            told = ", ".join(f"{key}: {_flow(value)}" for key, value in spec.items() if key != "inside")
             yield f"{indent}loop {item.loop.name} ({told})"
             yield from _block(item.body, indent + "  ")
+
+
+def _flow(value: object) -> str:
+    """``value`` as a graph file spells it on one line."""
+    if not isinstance(value, dict):
+        return str(value)
+    return "{" + ", ".join(f"{key}: {_flow(inner)}" for key, inner in value.items()) + "}"
 
 
 def _step(step: Step, indent: str) -> Iterator[str]:
