@@ -68,7 +68,7 @@ class SemiGlobalOutputs(Ports):
     """Disparity of the left view.
 
     ``consistent``: both views agree and the pixel is no speckle. ``occluded``: the left view alone sees it.
-    Elsewhere the disparity is filled from behind, with the low reliability that such values deserve.
+    Elsewhere the disparity is filled along the paths, with the low reliability that such values deserve.
     """
 
     disparity: DisparityEvidence
@@ -82,7 +82,7 @@ class SemiGlobal(Module[SemiGlobalParams, SemiGlobalInputs, SemiGlobalOutputs]):
     H. Hirschmüller, Stereo processing by semiglobal matching and mutual information, PAMI 30(2), 2008,
     doi:10.1109/TPAMI.2007.1166; census: Zabih and Woodfill, ECCV 1994, doi:10.1007/BFb0028345. Eight paths,
     jumps cheaper across brightness edges, a neutral cost outside the other image (so the left border
-    survives), agreement of both views, speckle removal, holes filled from behind.
+    survives), agreement of both views, speckle removal, holes filled along the eight paths.
 
     Assumes a rectified pair; brightness may differ by any monotonic curve. Says nothing (NaN, reliability 0)
     where no texture lies within reach. Large pairs (above 40 million pixels times levels) are matched at half
