@@ -20,7 +20,7 @@ from visint_lab.rays.scene import Lamp, Scene, Thing, turned
 from visint_lab.rays.shapes import Box, Cylinder, Ellipsoid, Plane, Sphere
 from visint_lab.render.rendering import render
 
-SEEDS = range(24)  # parameters were chosen on 1000 to 1007
+SEEDS = range(24)  # looked at while parameters were chosen on 1000 to 1029; 200 to 223 were run once, unseen
 NOISES = (5, 15, 25)
 METHODS = ("edges fixed", "edges", "regions", "voronoi", "whole")
 HERE = Context()
@@ -126,6 +126,7 @@ def test_the_whole_is_better_than_its_parts(shaded, capsys):
     for row in table.values():
         f = {method: rows[:, 0].mean() for method, rows in row.items()}
         vi = {method: rows[:, 1].mean() for method, rows in row.items()}
+        # flat 5 is 0.0003 short of regions alone (0.0002 on unseen scenes): equal, not better
         assert f["whole"] >= max(f["edges fixed"], f["regions"]) - 0.001
         assert f["whole"] >= f["edges"] - 0.02
         assert vi["whole"] < min(vi["edges fixed"], vi["edges"], vi["regions"])
