@@ -40,7 +40,8 @@ class Answer:
     def over(self, size: tuple[int, int], texture: Array) -> tuple[NormalsEvidence, Array]:
         """Evidence and ambiguity (H, W) over an image of ``size``; silent where ``texture`` is 0."""
         normals = spread_out(self.normals, size)
-        normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), np.float32(1e-6))
+        x, y, z = (normals[..., k] for k in range(3))
+        normals /= np.maximum(np.sqrt(x * x + y * y + z * z), np.float32(1e-6))[..., None]
         reliability = spread_out(self.reliability, size) * (texture > 0)
         evidence = NormalsEvidence.of(normals, spread_out(self.sigma, size), reliability)
         return evidence, np.clip(1 - spread_out(self.clarity, size), 0, 1)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from visint.arrays import Array
-from visint.fields import known as known_at
 
 __all__ = ["Known"]
 
@@ -25,13 +24,14 @@ class Known:
         if normals is None:
             return cls(np.full((*shape, 3), np.nan), np.zeros(shape))
         size = shape[::-1]
-        has = known_at(normals)
+        has = np.isfinite(normals[..., 0]) & np.isfinite(normals[..., 1]) & np.isfinite(normals[..., 2])
         sure: Array = has.astype(np.float32)
         if confidence is not None:
             sure = np.where(has, confidence, 0).astype(np.float32)
         # A site leans on its surest pixels.
         pull = sure + has * np.float32(1e-6)
-        pulled = np.where(has[..., None], normals, 0) * pull[..., None]
+        layers = [np.where(has, normals[..., k], 0) * pull for k in range(3)]
+        pulled = cv2.merge([layer.astype(np.float32, copy=False) for layer in layers])
         total = cv2.resize(pulled, size, interpolation=cv2.INTER_AREA)
         length = np.linalg.norm(total, axis=-1, keepdims=True)
         with np.errstate(divide="ignore", invalid="ignore"):
