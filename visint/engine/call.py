@@ -62,6 +62,7 @@ class Call:
         "_key",
         "_levels",
         "_lists",
+        "_name",
         "_never_none",
         "_outs",
         "_per_turn",
@@ -79,7 +80,8 @@ class Call:
         self._outs = tuple((slot, port, reader) for slot, port, reader in step.outs)  # unpacked quicker
         self._levels = None if step.node.levels is None else frozenset(step.node.levels)
         self._per_turn = step.node.callee.module is None or per_turn(step.node)
-        self._key = step.key
+        self._key = (step.key,)
+        self._name = step.node.name
         self._defaults = _defaults(step.node)
         self._invoke = _by_level(step.node, sub_graph)
 
@@ -117,15 +119,15 @@ class Call:
             values[port] = tuple([one for slot in sources if (one := slots[slot]) is not None])
 
     def _timed(self, state: State, frame: Frame, values: Values) -> Any:
-        name, level, emit = state.within + self.node.name, frame.level, state.emit
+        name, level, emit = state.within + self._name, frame.level, state.emit
         turn = frame.turns[-1] if frame.turns else 0
         started = perf_counter()
         if emit is not None:
             emit(_event(NodeStarted, (name, level, turn, started)))
         context = _context(Context)  # slot by slot: keywords would take a tenth of the whole call
         context.level, context.size, context._turns = level, frame.size, frame.turns
-        context._seed, context._per_turn = (*state.seed, self._key), self._per_turn
-        context._note, context._cancelled = partial(state.note, self.node.name, frame), state.cancel.is_set
+        context._seed, context._per_turn = state.seed + self._key, self._per_turn
+        context._note, context._cancelled = partial(state.note, self._name, frame), state.cancel.is_set
         try:
             outputs = self._invoke(values, context, state)
         except BaseException as error:
