@@ -52,7 +52,7 @@ class _OneThread:
                 threads = ((library, library.get_num_threads()) for library in self._libraries)
                 self._limited = [(library, count) for library, count in threads if count != 1]
                 for library, _ in self._limited:
-                    library.set_num_threads(1)
+                    _set_threads(library, 1)
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
@@ -61,7 +61,7 @@ class _OneThread:
             self._runs -= 1
             if self._runs == 0:
                 for library, threads in self._limited:
-                    library.set_num_threads(threads)
+                    _set_threads(library, threads)
                 for name, value in self._variables.items():
                     if value is None:
                         os.unsetenv(name)
@@ -76,6 +76,19 @@ class _OneThread:
             if "cv2" in sys.modules:
                 self._libraries.append(_OpenCV())
             self._imported = len(sys.modules)
+
+
+def _set_threads(library: Any, count: int) -> None:
+    """Sets the threads of a library, from whatever thread the run is on.
+
+    threadpoolctl heeds only the Python thread that was the first to set them, as long as that lives.
+    """
+    release = getattr(library, "clear_controlling_thread", None)
+    if release is not None:
+        release(force=True)
+    library.set_num_threads(count)
+    if release is not None:
+        release(force=True)
 
 
 ONE_THREAD = _OneThread()
