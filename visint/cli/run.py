@@ -25,7 +25,8 @@ __all__ = ["EXAMPLES", "command"]
 
 EXAMPLES = (
     "Examples: visint run stereo_sgm --left l.png --right r.png --calib calib.txt --out out;  "
-    "visint run mine.yaml --in image=a.png --out out --set match.speckle=50;  visint run out/run.json --out again"
+    "visint run mine.yaml --in image=a.png --out out --set match.speckle=50;  "
+    "visint run out/run.json --out again"
 )
 
 
