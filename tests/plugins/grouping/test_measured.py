@@ -115,7 +115,7 @@ def measured(shaded):
 @pytest.mark.slow
 @pytest.mark.parametrize("shaded", [False, True], ids=["flat", "shaded"])
 def test_the_whole_is_better_than_its_parts(shaded, capsys):
-    """24 scenes a noise: F of the whole at least any part's, to 0.001; its variation of information below."""
+    """24 scenes a noise: F of the whole at least any part's; its variation of information below."""
     table = measured(shaded)
     with capsys.disabled():
         for noise, row in table.items():
@@ -123,10 +123,14 @@ def test_the_whole_is_better_than_its_parts(shaded, capsys):
             worst = float((row["whole"][:, 0] - row["edges"][:, 0]).min())
             text = "  ".join(f"{method} {f:.4f} {vi:.3f}" for method, (f, vi) in means.items())
             print(f"\n{'shaded' if shaded else 'flat'} {noise}: {text}  whole - edges at worst {worst:+.3f}")
-    for row in table.values():
+    short = set()
+    for noise, row in table.items():
         f = {method: rows[:, 0].mean() for method, rows in row.items()}
         vi = {method: rows[:, 1].mean() for method, rows in row.items()}
-        # flat 5 is 0.0003 short of regions alone (0.0002 on unseen scenes): equal, not better
-        assert f["whole"] >= max(f["edges fixed"], f["regions"]) - 0.001
+        if f["whole"] < max(f["edges fixed"], f["regions"]):
+            short.add(noise)
         assert f["whole"] >= f["edges"] - 0.02
         assert vi["whole"] < min(vi["edges fixed"], vi["edges"], vi["regions"])
+    assert short <= (set() if shaded else {5})
+    if short:
+        pytest.xfail("flat 5 is 0.0003 short of regions alone: equal, not better")

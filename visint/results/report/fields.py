@@ -12,7 +12,7 @@ from visint.arrays import Array
 from visint.fields.evidence import Evidence
 from visint.results.report.maps import is_map
 from visint.results.report.markup import Markup, Part, element, joined, table
-from visint.results.report.numbers import number, with_unit
+from visint.results.report.numbers import number
 from visint.results.report.setting import Setting
 
 __all__ = ["evidence", "inputs", "outputs"]
@@ -125,7 +125,7 @@ def _array(value: Array) -> str:
 def _fields(model: BaseModel) -> str:
     """``name value`` of each field of a model that is a number, a word or a few of them."""
     simple = {name: _simple(value) for name, value in model if value is not None}
-    return ", ".join(with_unit(name.replace("_", " "), text) for name, text in simple.items() if text)
+    return ", ".join(f"{name.replace('_', ' ')} {text}" for name, text in simple.items() if text)
 
 
 def _simple(value: Any) -> str:
