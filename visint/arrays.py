@@ -27,6 +27,7 @@ __all__ = [
     "Disparity",
     "Features",
     "Image",
+    "Incidence",
     "Mask",
     "Normals",
     "Regions",
@@ -178,6 +179,7 @@ SPECS: Mapping[str, ArraySpec] = MappingProxyType(
             ("Disparity", "float32", "H W", "px"),
             ("Normals", "float32", "H W 3", "1"),
             ("Slopes", "float32", "H W 2", "baseline/px"),
+            ("Incidence", "float32", "H W", "1"),
             ("Boundaries", "bool", "H W", "1"),
             ("Regions", "int32", "H W", "1"),
             ("Mask", "bool", "H W", "1"),
@@ -197,6 +199,7 @@ if TYPE_CHECKING:
     from typing import Annotated as Disparity
     from typing import Annotated as Features
     from typing import Annotated as Image
+    from typing import Annotated as Incidence
     from typing import Annotated as Mask
     from typing import Annotated as Normals
     from typing import Annotated as Regions
@@ -207,6 +210,6 @@ if TYPE_CHECKING:
 else:
     Image, Color, Features = (ArrayKind.of(SPECS[name]) for name in ("Image", "Color", "Features"))
     Depth, Relief, Disparity = (ArrayKind.of(SPECS[name]) for name in ("Depth", "Relief", "Disparity"))
-    Normals, Slopes = (ArrayKind.of(SPECS[name]) for name in ("Normals", "Slopes"))
+    Normals, Slopes, Incidence = (ArrayKind.of(SPECS[name]) for name in ("Normals", "Slopes", "Incidence"))
     Boundaries, Regions, Mask = (ArrayKind.of(SPECS[name]) for name in ("Boundaries", "Regions", "Mask"))
     Confidence, Sigma, Scalars = (ArrayKind.of(SPECS[name]) for name in ("Confidence", "Sigma", "Scalars"))

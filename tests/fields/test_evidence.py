@@ -8,10 +8,12 @@ from hypothesis import given
 from pydantic import ValidationError
 
 from visint.fields import (
+    KINDS,
     BoundariesEvidence,
     DepthEvidence,
     DisparityEvidence,
     Evidence,
+    IncidenceEvidence,
     NormalsEvidence,
     SlopesEvidence,
     known,
@@ -48,6 +50,12 @@ class TestOf:
         evidence = SlopesEvidence.of(slopes, 0.1, 1.0)
         assert np.isnan(evidence.value[0, 0]).all()
         assert evidence.reliability.tolist() == [[0, 1]]
+
+    def test_incidence_is_about_depth(self):
+        """A plain number a pixel, which depth and a light explain together."""
+        evidence = IncidenceEvidence.of(f32([[0.5, NAN]]), 0.1, 1.0)
+        assert KINDS[evidence.measures].constrains == "depth"
+        assert evidence.reliability.tolist() == [[1, 0]]
 
     def test_boundaries_keep_their_value_where_they_abstain(self):
         """A bool cannot be NaN: reliability alone tells."""
@@ -126,6 +134,6 @@ class TestKnown:
 
 def test_every_class_measures_a_kind_of_its_own():
     classes = [each for each in Evidence.__subclasses__() if each.__module__.startswith("visint.")]
-    assert len({each.measures for each in classes}) == len(classes) == 6
+    assert len({each.measures for each in classes}) == len(classes) == 7
     assert NormalsEvidence.measures == "Normals"
     assert all(each.__doc__ for each in classes)

@@ -119,6 +119,7 @@ TAKEN = {
     "Confidence": {"PNG", "PNG16", "PGM", "PFM", "npy float"},
     "Normals": {"PFM colour", "npy normals"},
     "Slopes": {"npy slopes"},
+    "Incidence": {"npy float"},
     "Mask": {"PNG", "PNG16", "PGM", "npy bool"},
     "Boundaries": {"PNG", "PNG16", "PGM", "npy bool"},
     "Regions": {"PNG", "PNG16", "PGM", "npy int"},

@@ -13,6 +13,7 @@ from visint.arrays import (
     Confidence,
     Depth,
     Disparity,
+    Incidence,
     Normals,
     Relief,
     Sigma,
@@ -24,6 +25,7 @@ __all__ = [
     "DepthEvidence",
     "DisparityEvidence",
     "Evidence",
+    "IncidenceEvidence",
     "NormalsEvidence",
     "ReliefEvidence",
     "SlopesEvidence",
@@ -140,6 +142,16 @@ class SlopesEvidence(Evidence):
 
     measures = "Slopes"
     value: Slopes[Array, "H W 2"]
+
+
+class IncidenceEvidence(Evidence):
+    """Cosine of the angle between normal and light, in [0, 1]: what brightness says before a direction is.
+
+    Constrains depth through the light: 1 faces it, 0 is at the edge of its own shadow.
+    """
+
+    measures = "Incidence"
+    value: Incidence[Array, "H W"]
 
 
 class BoundariesEvidence(Evidence):

@@ -11,6 +11,7 @@ Disparity   float32 H W    px           mean, halved     linear, ×2  depth
 Relief      float32 H W    1            mean of known    linear      depth
 Normals     float32 H W 3  1            mean, unit again linear      depth
 Slopes      float32 H W 2  baseline/px  mean, ×2         linear, ½   depth
+Incidence   float32 H W    1            mean             linear      depth
 Boundaries  bool H W       1            any pixel        nearest     boundaries
 Regions     int32 H W      1            most frequent    nearest     boundaries
 Mask        bool H W       1            any pixel        nearest
@@ -119,6 +120,7 @@ def _table() -> dict[str, FieldKind]:
             down=lambda normals: rs.renormalised(rs.block_mean(normals)),
         ),
         _continuous("Slopes", finer=0.5, constrains="depth"),
+        _continuous("Incidence", constrains="depth"),
         FieldKind("Boundaries", SPECS["Boundaries"], rs.any_down, rs.nearest_up, constrains="boundaries"),
         FieldKind("Regions", SPECS["Regions"], rs.most_frequent_down, rs.nearest_up, constrains="boundaries"),
         FieldKind("Mask", SPECS["Mask"], rs.any_down, rs.nearest_up),

@@ -18,7 +18,7 @@ Size = tuple[int, int]
 Content = Literal["noise", "grey", "holes", "unknown"]
 """``noise``; ``grey``, no texture at all; ``holes``, noise a third of which is unknown; all ``unknown``."""
 
-CAN_BE_UNKNOWN = frozenset({"Depth", "Disparity", "Relief", "Normals", "Slopes", "Sigma"})
+CAN_BE_UNKNOWN = frozenset({"Depth", "Disparity", "Relief", "Normals", "Slopes", "Incidence", "Sigma"})
 """The built-in kinds in which NaN stands for unknown; an image or a confidence is known everywhere."""
 
 _RANGES: Mapping[str, tuple[float, float]] = {
