@@ -21,6 +21,7 @@ __all__ = [
     "ArrayKind",
     "ArraySpec",
     "Boundaries",
+    "BoundaryKinds",
     "Color",
     "Confidence",
     "Depth",
@@ -181,6 +182,7 @@ SPECS: Mapping[str, ArraySpec] = MappingProxyType(
             ("Slopes", "float32", "H W 2", "baseline/px"),
             ("Incidence", "float32", "H W", "1"),
             ("Boundaries", "bool", "H W", "1"),
+            ("BoundaryKinds", "uint8", "H W", "1"),
             ("Regions", "int32", "H W", "1"),
             ("Mask", "bool", "H W", "1"),
             ("Confidence", "float32", "H W", "1"),
@@ -193,6 +195,7 @@ SPECS: Mapping[str, ArraySpec] = MappingProxyType(
 
 if TYPE_CHECKING:
     from typing import Annotated as Boundaries
+    from typing import Annotated as BoundaryKinds
     from typing import Annotated as Color
     from typing import Annotated as Confidence
     from typing import Annotated as Depth
@@ -212,4 +215,5 @@ else:
     Depth, Relief, Disparity = (ArrayKind.of(SPECS[name]) for name in ("Depth", "Relief", "Disparity"))
     Normals, Slopes, Incidence = (ArrayKind.of(SPECS[name]) for name in ("Normals", "Slopes", "Incidence"))
     Boundaries, Regions, Mask = (ArrayKind.of(SPECS[name]) for name in ("Boundaries", "Regions", "Mask"))
+    BoundaryKinds = ArrayKind.of(SPECS["BoundaryKinds"])
     Confidence, Sigma, Scalars = (ArrayKind.of(SPECS[name]) for name in ("Confidence", "Sigma", "Scalars"))

@@ -57,6 +57,7 @@ class TestTable:
         rules = {
             "any pixel": rs.any_down,
             "most frequent": rs.most_frequent_down,
+            "most significant": rs.most_significant_down,
             "mean": rs.block_mean,
             "mean of known": rs.block_mean,
         }

@@ -250,6 +250,19 @@ class TestThinAndSmall:
         assert coarse.any() == lines.any()
 
 
+class TestMostSignificant:
+    def test_the_smallest_number_of_a_block_that_is_not_0(self):
+        """A limb (1) goes before a crease (3), and any kind before none; odd sides repeat their last."""
+        kinds = np.array([[0, 5, 3, 0, 4], [0, 0, 1, 0, 0], [2, 0, 0, 0, 0]], np.uint8)
+        assert rs.most_significant_down(kinds).tolist() == [[5, 1, 4], [2, 0, 0]]
+
+    @given(strategies.arrays("BoundaryKinds"))
+    def test_no_line_is_lost_or_invented(self, kinds):
+        coarse = rs.most_significant_down(kinds)
+        np.testing.assert_array_equal(coarse > 0, rs.any_down(kinds > 0))
+        assert set(np.unique(coarse)) <= set(np.unique(kinds))
+
+
 class TestNormalsAndRegions:
     def test_renormalised(self):
         vectors = np.array([[[3, 0, -4], [0, 0, 0], [NAN, 0, 1]]], np.float32)

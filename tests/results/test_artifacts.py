@@ -5,13 +5,14 @@ from __future__ import annotations
 import dataclasses
 import io
 import json
+from importlib import resources
 
 import cv2
 import numpy as np
 import pytest
 
 from visint.errors import OutputError
-from visint.fields import DepthEvidence
+from visint.fields import BoundaryKind, DepthEvidence
 from visint.hookspecs import hookimpl
 from visint.results.artifacts import files_of
 
@@ -119,6 +120,20 @@ def test_booleans_are_a_black_and_white_png(cue, kind):
     value = np.random.default_rng(0).random(SIZE) < 0.5
     files = only(with_output(cue, "it", kind, value))
     np.testing.assert_array_equal(png(files["it.png"]), value * 255)
+
+
+def test_kinds_of_boundary_are_an_npz_and_a_picture_in_their_colours(cue):
+    """Every kind has its colour, none is black; the report's key shows the same colours."""
+    value = np.array([[0, 1, 2], [3, 4, 5]], np.uint8)
+    files = only(with_output(cue, "kinds", "BoundaryKinds", value))
+    np.testing.assert_array_equal(npz(files["kinds.npz"])["kinds"], value)
+    colors = png(files["kinds.png"]).reshape(-1, 3)
+    assert not colors[0].any()
+    assert len({tuple(color) for color in colors}) == 6
+    css = (resources.files("visint.results.report") / "report.css").read_text()
+    for kind in BoundaryKind:
+        if kind:
+            assert f".swatch.{kind.name.lower()} {{ background: #{bytes(colors[kind]).hex()}; }}" in css
 
 
 def test_regions_are_an_npz_and_a_picture_in_their_colours(cue):

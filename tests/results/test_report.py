@@ -16,6 +16,7 @@ from visint.hookspecs import hookimpl
 from visint.module import Module, Params, Ports
 from visint.results import Measure, Record, Stop, Turn, Warned, pictures
 from visint.results.report import report
+from visint.results.report.maps import Map, figure
 from visint.results.report.page import MOST_BYTES
 
 VOID = {"meta", "link", "img", "br", "rect", "line", "polyline", "circle", "stop"}
@@ -104,6 +105,15 @@ class TestWhatItTells:
     def test_depth_has_the_cameras_unit_and_disparity_pixels(self, met_page):
         assert re.search(r"Depth depth: [\d.]+ to [\d.]+ mm, 100 % known", met_page)
         assert re.search(r"Disparity disparity: [\d.]+ to [\d.]+ px, 100 % known", met_page)
+
+    def test_kinds_of_boundary_are_counted_and_keyed(self):
+        """A key names the kinds that there are, no other; a map without any says so."""
+        kinds = np.array([[0, 1, 1], [0, 5, 0]], np.uint8)
+        page = str(figure(Map("kinds", "BoundaryKinds", kinds), 100))
+        assert "2 pixels limb, 1 pixel mark" in page
+        assert "swatch limb" in page
+        assert "swatch convex" not in page
+        assert "no boundaries" in str(figure(Map("kinds", "BoundaryKinds", 0 * kinds), 100))
 
     def test_why_each_loop_ended(self, taken):
         assert taken.text.count("map.depth changed by less than 0.001") == 3

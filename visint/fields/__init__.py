@@ -1,5 +1,6 @@
 """Field kinds, evidence and geometry: the words in which vision modules talk to each other."""
 
+from visint.fields.boundary_kind import BoundaryKind
 from visint.fields.camera import Camera
 from visint.fields.evidence import (
     BoundariesEvidence,
@@ -18,6 +19,7 @@ from visint.fields.light import Light
 __all__ = [
     "KINDS",
     "BoundariesEvidence",
+    "BoundaryKind",
     "Camera",
     "DepthEvidence",
     "DisparityEvidence",

@@ -1,29 +1,30 @@
 """Field kinds: one table of what each kind of value is and how it changes with the level.
 
-=========== ============== ============ ================ =========== ===========
-kind        array          unit         going down       going up    constrains
-=========== ============== ============ ================ =========== ===========
-Image       float32 H W    1            mean             linear
-Color       float32 H W 3  1            mean             linear
-Features    float32 H W C  1            mean             linear
-Depth       float32 H W    baseline     mean of known    linear      depth
-Disparity   float32 H W    px           mean, halved     linear, ×2  depth
-Relief      float32 H W    1            mean of known    linear      depth
-Normals     float32 H W 3  1            mean, unit again linear      depth
-Slopes      float32 H W 2  baseline/px  mean, ×2         linear, ½   depth
-Incidence   float32 H W    1            mean             linear      depth
-Boundaries  bool H W       1            any pixel        nearest     boundaries
-Regions     int32 H W      1            most frequent    nearest     boundaries
-Mask        bool H W       1            any pixel        nearest
-Confidence  float32 H W    1            mean             linear
-Sigma       float32 H W    1            mean             linear
-Camera      Camera                      halved           doubled
-Light       Light                       same             same
-Scalars     float64 N      1            same             same
-Scalar      float                       same             same
-Flag        bool                        same             same
-Text        str                         same             same
-=========== ============== ============ ================ =========== ===========
+============= ============== ============ ================ =========== ===========
+kind          array          unit         going down       going up    constrains
+============= ============== ============ ================ =========== ===========
+Image         float32 H W    1            mean             linear
+Color         float32 H W 3  1            mean             linear
+Features      float32 H W C  1            mean             linear
+Depth         float32 H W    baseline     mean of known    linear      depth
+Disparity     float32 H W    px           mean, halved     linear, ×2  depth
+Relief        float32 H W    1            mean of known    linear      depth
+Normals       float32 H W 3  1            mean, unit again linear      depth
+Slopes        float32 H W 2  baseline/px  mean, ×2         linear, ½   depth
+Incidence     float32 H W    1            mean             linear      depth
+Boundaries    bool H W       1            any pixel        nearest     boundaries
+BoundaryKinds uint8 H W      1            most significant nearest
+Regions       int32 H W      1            most frequent    nearest     boundaries
+Mask          bool H W       1            any pixel        nearest
+Confidence    float32 H W    1            mean             linear
+Sigma         float32 H W    1            mean             linear
+Camera        Camera                      halved           doubled
+Light         Light                       same             same
+Scalars       float64 N      1            same             same
+Scalar        float                       same             same
+Flag          bool                        same             same
+Text          str                         same             same
+============= ============== ============ ================ =========== ===========
 
 ``between`` of a pyramid may choose ``replicate``, ``linear`` or ``quadratic`` for going up.
 """
@@ -122,6 +123,7 @@ def _table() -> dict[str, FieldKind]:
         _continuous("Slopes", finer=0.5, constrains="depth"),
         _continuous("Incidence", constrains="depth"),
         FieldKind("Boundaries", SPECS["Boundaries"], rs.any_down, rs.nearest_up, constrains="boundaries"),
+        FieldKind("BoundaryKinds", SPECS["BoundaryKinds"], rs.most_significant_down, rs.nearest_up),
         FieldKind("Regions", SPECS["Regions"], rs.most_frequent_down, rs.nearest_up, constrains="boundaries"),
         FieldKind("Mask", SPECS["Mask"], rs.any_down, rs.nearest_up),
         _continuous("Confidence"),

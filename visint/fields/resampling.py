@@ -18,6 +18,7 @@ __all__ = [
     "levels_down_to",
     "linear_up",
     "most_frequent_down",
+    "most_significant_down",
     "nearest_up",
     "quadratic_up",
     "region_boundaries",
@@ -62,6 +63,15 @@ def block_mean(value: Array) -> Array:
 def any_down(value: Array) -> Array:
     """bool: whether any pixel of the block is set. Thin lines live on."""
     return np.asarray(_blocks(value).any(axis=0))
+
+
+def most_significant_down(value: Array) -> Array:
+    """uint8: the smallest of the block's values that is not 0; 0 if all are. Thin lines live on.
+
+    For kinds of boundary, which are numbered from the most significant on.
+    """
+    blocks = _blocks(value)
+    return np.asarray((blocks - np.uint8(1)).min(axis=0) + np.uint8(1))  # 0 wraps round to the largest
 
 
 def most_frequent_down(value: Array) -> Array:

@@ -77,6 +77,11 @@ def _mask(name: str, value: Array) -> Files:
     yield f"{name}.png", io.encode_png(value)
 
 
+def _boundary_kinds(name: str, value: Array) -> Files:
+    yield f"{name}.npz", io.encode_npz({name: value})
+    yield f"{name}.png", io.encode_png(pictures.of_boundary_kinds(value))
+
+
 def _regions(name: str, value: Array) -> Files:
     yield f"{name}.npz", io.encode_npz({name: value})
     yield f"{name}.png", io.encode_png(pictures.of_regions(value))
@@ -87,6 +92,7 @@ _BY_KIND: Mapping[str, Callable[[str, Any], Files]] = {
     "Disparity": _disparity,
     "Normals": _normals,
     "Boundaries": _mask,
+    "BoundaryKinds": _boundary_kinds,
     "Mask": _mask,
     "Regions": _regions,
 }

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from visint import io
 from visint.arrays import Array
+from visint.fields.boundary_kind import BoundaryKind
 from visint.fields.evidence import known
 
 if TYPE_CHECKING:
     from visint.results.result import Result
 
 __all__ = [
+    "BOUNDARY_COLORS",
     "UNKNOWN",
+    "of_boundary_kinds",
     "of_confidence",
     "of_image",
     "of_mask",
@@ -28,6 +33,19 @@ __all__ = [
 
 UNKNOWN = 128
 """The grey of unknown pixels: no colour of the turbo map, and of the normals that of none."""
+
+
+BOUNDARY_COLORS: Mapping[BoundaryKind, tuple[int, int, int]] = MappingProxyType(
+    {
+        BoundaryKind.NONE: (0, 0, 0),
+        BoundaryKind.LIMB: (230, 75, 53),
+        BoundaryKind.OCCLUDING: (245, 195, 60),
+        BoundaryKind.CONVEX: (77, 187, 213),
+        BoundaryKind.CONCAVE: (140, 120, 230),
+        BoundaryKind.MARK: (160, 160, 160),
+    }
+)
+"""The colour, sRGB, of each kind of boundary; any other number is black too."""
 
 
 def span(value: Array) -> tuple[float, float]:
@@ -76,6 +94,14 @@ def of_regions(value: Array) -> Array:
     mixed = value.astype(np.uint32) * np.uint32(2654435761)
     rgb = np.stack([(mixed >> shift) & 0x7F for shift in (8, 16, 24)], axis=-1) + 96
     return np.where((value == 0)[..., None], 0, rgb).astype(np.uint8)
+
+
+def of_boundary_kinds(value: Array) -> Array:
+    """Kinds of boundary (H, W), :class:`visint.fields.BoundaryKind`, each in its colour; black is none."""
+    colors = np.zeros((256, 3), np.uint8)
+    for kind, color in BOUNDARY_COLORS.items():
+        colors[kind] = color
+    return colors[value]
 
 
 def of_mask(value: Array) -> Array:

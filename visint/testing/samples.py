@@ -89,6 +89,8 @@ def sample_array(
     dtype = np.dtype(spec.dtype)
     if dtype.kind == "b":
         return rng.random(shape) < (0.0 if content == "grey" else 0.2)
+    if spec.kind == "BoundaryKinds":
+        return rng.integers(0, 1 if content == "grey" else 6, shape, dtype=dtype)
     if dtype.kind in "iu":
         return rng.integers(1, 2 if content == "grey" else 4, shape, dtype=dtype)
     low, high = _RANGES.get(spec.kind, (0.0, 1.0))

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from visint.arrays import Array
+from visint.fields.boundary_kind import BoundaryKind
 from visint.fields.evidence import known
 from visint.results import pictures
 from visint.results.report.embed import embedded
@@ -107,6 +108,22 @@ def _boundaries(shown: Map) -> _View:
     return _mask(shown)._replace(legend=key({"white": "boundary"}))
 
 
+def _boundary_kinds(shown: Map) -> _View:
+    seen = [kind for kind in BoundaryKind if kind and (shown.value == kind).any()]
+    counts = [f"{count(int(np.count_nonzero(shown.value == kind)), 'pixel')} {_NAMED[kind]}" for kind in seen]
+    legend = key({kind.name.lower(): _NAMED[kind] for kind in seen}) if seen else None
+    return _View(pictures.of_boundary_kinds(shown.value), legend, ", ".join(counts) or "no boundaries")
+
+
+_NAMED = {
+    BoundaryKind.LIMB: "limb",
+    BoundaryKind.OCCLUDING: "occluding edge",
+    BoundaryKind.CONVEX: "convex crease",
+    BoundaryKind.CONCAVE: "concave crease",
+    BoundaryKind.MARK: "mark",
+}
+
+
 def _regions(shown: Map) -> _View:
     labels = np.unique(shown.value)
     facts = f"{count(int(np.count_nonzero(labels)), 'region')}, {percent(_share(shown.value != 0))} labelled"
@@ -131,6 +148,7 @@ _VIEWS: dict[str, Callable[[Map], _View]] = {
     "Color": _image,
     "Normals": _normals,
     "Boundaries": _boundaries,
+    "BoundaryKinds": _boundary_kinds,
     "Mask": _mask,
     "Regions": _regions,
     "Confidence": _confidence,
