@@ -13,5 +13,6 @@ visint_contract = 1
 def visint_modules() -> list[Any]:
     """The modules of this plugin; imported here so that finding the plugin costs nothing."""
     from visint_bayes.boundaries import Boundaries
+    from visint_bayes.pairwise import Pairwise
 
-    return [Boundaries]
+    return [Boundaries, Pairwise]
