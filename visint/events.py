@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple, TypeAlias
 
 __all__ = [
+    "Assumed",
     "Event",
     "LevelStarted",
     "LoopEnded",
@@ -102,6 +103,20 @@ class Measured(NamedTuple):
     value: float
 
 
+class Assumed(NamedTuple):
+    """A module said where a premise of its held (``ctx.assumed``).
+
+    ``held`` is a bool for the whole image (then ``regions`` is None), or bool by label of ``regions``.
+    """
+
+    node: str
+    level: int
+    turn: int
+    name: str
+    held: Any
+    regions: Any
+
+
 class Warned(NamedTuple):
     """A module, or the engine, has something to say (``ctx.warn``)."""
 
@@ -129,6 +144,7 @@ Event: TypeAlias = (
     | TurnFinished
     | LoopEnded
     | Measured
+    | Assumed
     | Warned
     | RunFinished
 )

@@ -22,6 +22,7 @@ from typing import Any, ClassVar, Generic, TypeVar, get_args, get_origin
 import numpy as np
 from pydantic import BaseModel, ConfigDict
 
+from visint.arrays import Array
 from visint.errors import ModuleError
 from visint.ports import Ports, PortSpec
 
@@ -114,6 +115,38 @@ class Context:
         if self._note is not None:
             self._note("measure", name, float(value))
 
+    def assumed(self, name: str, held: bool | Array, regions: Array | None = None) -> None:
+        """Records where a premise of the module (:attr:`Module.assumptions`) held and where it did not.
+
+        What was said last at the finest level counts. A module that abstains may say why by this.
+
+        Parameters
+        ----------
+        name
+            One that the module declares.
+        held
+            Whether it held in the whole image; or with ``regions`` bool (N,), by label, that of label 0 unused.
+        regions
+            int32 (H, W), labels from 1 and 0 for pixels that belong to none. Labels from N on count as not
+            looked at.
+
+        Raises
+        ------
+        ValueError
+            If ``held`` is not one flag, or with ``regions`` not one flag a label.
+        """
+        if self._note is None:
+            return
+        if regions is None:
+            self._note("assumed", name, (bool(held), None))
+            return
+        by_label = np.asarray(held, dtype=bool)
+        if by_label.ndim != 1:
+            raise ValueError(
+                f"{name!r} with regions wants one flag a label, not an array of {by_label.ndim} axes"
+            )
+        self._note("assumed", name, (by_label, regions))
+
     def warn(self, code: str, text: str) -> None:
         """Records a warning: ``code`` is a short name in the module's words, ``text`` one sentence."""
         if self._note is not None:
@@ -140,6 +173,12 @@ class Module(ABC, Generic[P, I, O]):
     """True if equal inputs may give another result next turn (it reads ``ctx.rng`` or ``ctx.turn``).
 
     The engine lifts other nodes out of a loop that feeds them nothing."""
+
+    assumptions: ClassVar[tuple[str, ...]] = ()
+    """The premises the module rests on, names of :data:`visint.fields.assumptions.ASSUMPTIONS`.
+
+    A premise missing there is named ``plugin.name``. Where the module tests one it says so by
+    :meth:`Context.assumed`."""
 
     Params: ClassVar[type[Params]]
     Inputs: ClassVar[type[Ports]]

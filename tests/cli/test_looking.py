@@ -127,6 +127,11 @@ class TestModules:
         assert told["parameters"]["speckle"]["default"] == 100
         assert told["inputs"]["camera"] == "Camera?"
 
+    def test_assumptions_with_their_sentences(self, visint, toys):
+        assert "  opacity: One surface is seen at a pixel" in visint("modules", "toy.boundary_cue").out
+        told = visint("modules", "toy.boundary_cue", "--json").json["assumptions"]
+        assert list(told) == ["opacity", "homogeneity"]
+
     def test_those_of_a_plugin(self, visint):
         out = visint("modules", "stereo").out
         assert "stereo.sgm" in out

@@ -66,6 +66,34 @@ class Individual(Good):
         return inputs.image + np.float32(self.offset)
 
 
+class Undeclared(Good):
+    """Speaks of an assumption that it does not declare."""
+
+    breaks: ClassVar = {"test_assumptions_are_declared"}
+
+    def made(self, inputs, ctx):
+        ctx.assumed("opacity", True)
+        return inputs.image * 2
+
+
+class Misspelled(Good):
+    """Declares an assumption that nobody knows."""
+
+    breaks: ClassVar = {"test_assumptions_are_declared"}
+    assumptions = ("opaqueness",)
+
+
+class HalfSaid(Good):
+    """Leaves out the flag of the second region."""
+
+    breaks: ClassVar = {"test_assumptions_are_declared"}
+    assumptions = ("homogeneity",)
+
+    def made(self, inputs, ctx):
+        ctx.assumed("homogeneity", [False, True], np.full(inputs.image.shape, 2, np.int32))
+        return inputs.image * 2
+
+
 class Turning(Good):
     """Asks for the turn without saying `per_turn`: nothing else of it can run."""
 

@@ -51,6 +51,10 @@ BROKEN = {
     "returns another class": (HEAD + MODULES.replace("[One]", "[Out]"), "no subclass of Module"),
     "names a module badly": (SOUND.replace('"one"', '"One!"'), "'One!' of One is taken or no name"),
     "names two alike": (HEAD + MODULES.replace("[One]", "[One, One]"), "'one' of One is taken"),
+    "misspells an assumption": (
+        SOUND.replace('name = "one"', 'name = "one"\n    assumptions = ("lambertian_reflectence",)'),
+        "assumption 'lambertian_reflectence' is unknown; did you mean 'lambertian_reflectance'?",
+    ),
     "says no models": (SOUND.replace("Module[Params, Ports, Out]", "Module"), "does not say Module[Params, Inputs, Outputs]"),
     "has no run": (SOUND.replace("def run", "def ran"), "One has no run"),
     "takes any array": (SOUND.replace("value: float", "value: object"), "TypeError: port 'value'"),

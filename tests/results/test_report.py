@@ -75,7 +75,7 @@ class TestWhatItTells:
     def test_every_section_that_has_something_to_say(self, taken):
         names = [section["id"] for section in taken.all("section")]
         assert names == [
-            *("warnings", "inputs", "outputs", "evidence", "convergence"),
+            *("warnings", "inputs", "outputs", "evidence", "assumptions", "convergence"),
             *("timings", "measures", "graph", "versions"),
         ]
 

@@ -66,6 +66,8 @@ def _summary(module: type) -> str:
 
 
 def _describe(catalog: Catalog, name: str) -> dict[str, Any]:
+    from visint.fields.assumptions import meaning
+
     module_id = ModuleId.parse(name)
     module = None
     if module_id is not None and module_id.plugin in catalog.plugin_names:
@@ -80,6 +82,7 @@ def _describe(catalog: Catalog, name: str) -> dict[str, Any]:
         "inputs": {port: str(spec) for port, spec in module.Inputs.specs.items()},
         "outputs": {port: str(spec) for port, spec in module.Outputs.specs.items()},
         "parameters": schema,
+        "assumptions": {name: meaning(name) for name in module.assumptions},
         "notes": {
             part: inspect.getdoc(model) or ""
             for part, model in zip(_PARTS, (module.Inputs, module.Outputs, module.Params), strict=True)
@@ -108,7 +111,13 @@ def _page(told: dict[str, Any]) -> str:
         else:
             lines += [f"  {name}: {spec}" for name, spec in told[part].items()]
         lines += ["", indent(told["notes"].get(part, ""), "    "), ""]
+    if told["assumptions"]:
+        lines += ["assumptions:", *(_assumption(*each) for each in told["assumptions"].items())]
     return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).rstrip()
+
+
+def _assumption(name: str, says: str) -> str:
+    return f"  {name}: {says}" if says else f"  {name}"
 
 
 def _parameter(name: str, schema: Mapping[str, Any]) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 
 from visint.engine.frame import Frame
 from visint.errors import Cancelled
-from visint.events import Event, Measured, Observer, Warned
+from visint.events import Assumed, Event, Measured, Observer, Warned
 from visint.fields.camera import Camera
 from visint.results import records
 
@@ -78,15 +78,24 @@ class State:
         place = (self.within + node, frame.level, frame.turn)
         if what == "measure":
             self.record.measures.append(records.Measure(*place, name, value))
+        elif what == "assumed":
+            self.record.note_assumed(records.Assumed(*place, name, value[0], value[1], frame.size))
         else:
             self.record.warnings.append(records.Warned(*place, name, value))
         if self.emit is not None:
-            self.emit((Measured if what == "measure" else Warned)(*place, name, value))
+            self.emit(_heard(what, place, name, value))
 
     def tell(self, event: Event) -> None:
         """Hands an event to whoever listens."""
         if self.emit is not None:
             self.emit(event)
+
+
+def _heard(what: str, place: tuple[str, int, int], name: str, value: Any) -> Event:
+    """The event that tells observers of what a module said."""
+    if what == "assumed":
+        return Assumed(*place, name, held=value[0], regions=value[1])
+    return (Measured if what == "measure" else Warned)(*place, name, value)
 
 
 def emitter(observers: Sequence[Observer], *, threaded: bool = False) -> Callable[[Event], None] | None:

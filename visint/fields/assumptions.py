@@ -1,9 +1,9 @@
 """Assumptions: the premises on which vision modules rest, by name, each in one sentence.
 
 Names 1 to 32 follow Appendix B of the dissertation, in the field's words; those behind are what stereo,
-shading and line labelling rest on besides. A module declares its own in :attr:`visint.module.Module.assumptions`
-and says where it found them held or violated with :meth:`visint.module.Context.assumed`. A plugin may name one
-that is missing here ``plugin.name``.
+shading and line labelling rest on besides. A module declares its own in
+:attr:`visint.module.Module.assumptions` and says where it found them held or violated with
+:meth:`visint.module.Context.assumed`. A plugin may name one that is missing here ``plugin.name``.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ ASSUMPTIONS: Mapping[str, str] = MappingProxyType(
         "single_light_source": "One source lights everything.",
         "small_motion": "Features move by little from one image to the next.",
         "polyhedral_world": "Objects are solid bodies with plane faces.",
-        "paraperspective_projection": "An object is small beside its distance: perspective acts on it as a whole.",
+        "paraperspective_projection": "An object is small beside its distance and shrinks as a whole.",
         "sufficient_context": "The markings on a surface show how projection distorts them.",
         "symmetry": "Objects are symmetric.",
         "rigidity": "No part of an object moves against another.",

@@ -12,6 +12,7 @@ import pluggy
 from visint import hookspecs
 from visint.errors import PluginError
 from visint.events import Observer
+from visint.fields.assumptions import check_names
 from visint.fields.kinds import FieldKind
 from visint.module import CONTRACT, Module
 from visint.names import is_name
@@ -121,6 +122,7 @@ def _by_name(modules: Iterable[Any]) -> dict[str, type[AnyModule]]:
             raise ValueError(f"module name {module.name!r} of {module.__qualname__} is taken or no name")
         if not hasattr(module, "Inputs"):
             raise TypeError(f"{module.__qualname__} does not say Module[Params, Inputs, Outputs]")
+        check_names(module.assumptions)
         if isabstract(module):
             raise TypeError(f"{module.__qualname__} has no run")
         found[module.name] = module

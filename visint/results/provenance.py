@@ -63,6 +63,10 @@ def provenance(result: Result, sources: Mapping[str, Source]) -> dict[str, Any]:
         "stops": [stop._asdict() for stop in result.stops],
         "trace": [turn._asdict() for turn in result.trace],
         "warnings": [warned._asdict() for warned in result.warnings],
+        "assumptions": {
+            node: {name: premise.plain() for name, premise in some.items()}
+            for node, some in result.assumptions.items()
+        },
         "measures": [measure._asdict() for measure in result.record.measures],
     }
     return {key: _spelled(one) for key, one in told.items()}

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple
 
-__all__ = ["Measure", "Reason", "Record", "Stop", "Timing", "Turn", "Warned"]
+__all__ = ["Assumed", "Measure", "Reason", "Record", "Stop", "Timing", "Turn", "Warned"]
 
 Reason = Literal["times", "converged", "held", "exhausted"]
 
@@ -50,6 +50,21 @@ class Measure(NamedTuple):
     value: float
 
 
+class Assumed(NamedTuple):
+    """What a module said last of a premise of its, at the finest level it spoke at.
+
+    ``held`` is a bool for the whole image of ``size`` (rows, columns), or bool by label of ``regions``.
+    """
+
+    node: str
+    level: int
+    turn: int
+    name: str
+    held: Any
+    regions: Any
+    size: tuple[int, int] | None
+
+
 class Timing(NamedTuple):
     """Calls and seconds of a node at a level."""
 
@@ -67,6 +82,7 @@ class Record:
     stops: list[Stop] = field(default_factory=list)
     warnings: list[Warned] = field(default_factory=list)
     measures: list[Measure] = field(default_factory=list)
+    assumed: dict[tuple[str, str], Assumed] = field(default_factory=dict)
     stop_after: str | None = None
     start: Mapping[str, Any] = field(default_factory=dict)
     seconds: dict[tuple[str, int], list[float]] = field(default_factory=lambda: defaultdict(lambda: [0, 0.0]))
@@ -75,6 +91,12 @@ class Record:
         """Calls and seconds by node and level, in the order of first calls."""
         for (node, level), (calls, seconds) in self.seconds.items():
             yield Timing(node, level, int(calls), seconds)
+
+    def note_assumed(self, said: Assumed) -> None:
+        """Keeps ``said`` in place of what was said before, unless that was at a finer level."""
+        before = self.assumed.get((said.node, said.name))
+        if before is None or said.level <= before.level:
+            self.assumed[said.node, said.name] = said
 
     def in_order(self, loops: Iterable[str], nodes: Iterable[str]) -> None:
         """Sorts by loop and by node, keeping the order of time within each: threads may have mixed them.
@@ -90,6 +112,9 @@ class Record:
         self.stops.sort(key=lambda stop: place(stop.loop))
         self.warnings.sort(key=lambda warned: place(warned.node))
         self.measures.sort(key=lambda measure: place(measure.node))
+        assumed = sorted(self.assumed.items(), key=lambda each: place(each[0][0]))
+        self.assumed.clear()
+        self.assumed.update(assumed)
         seconds = sorted(self.seconds.items(), key=lambda each: place(each[0][0]))
         self.seconds.clear()
         self.seconds.update(seconds)

@@ -14,6 +14,7 @@ from visint.fields.snapshot import MapSnapshot, Writer
 from visint.graph.graph import Graph
 from visint.names import did_you_mean
 from visint.results.derive import derived
+from visint.results.premises import Premise, premises
 from visint.results.provenance import Source
 from visint.results.records import Measure, Record, Stop, Turn, Warned
 
@@ -104,6 +105,11 @@ class Result(Mapping[str, Any]):
     def measures(self) -> list[Measure]:
         """The numbers that modules recorded."""
         return self.record.measures
+
+    @property
+    def assumptions(self) -> dict[str, dict[str, Premise]]:
+        """By node and name: the assumptions of the modules, and in which regions they held or did not."""
+        return premises(self.graph, self.record)
 
     def save(
         self,

@@ -16,6 +16,7 @@ import numpy as np
 import visint.module
 from visint.errors import Cancelled
 from visint.fields import Evidence
+from visint.fields.assumptions import check_names
 from visint.module import Context, Module, Params, Ports, PortSpec
 from visint.names import is_name
 from visint.testing import samples, watch
@@ -156,6 +157,16 @@ class ModuleContract:
         assert asked, "run never calls ctx.check(); say instant = True if it has nothing to interrupt"
         raise AssertionError("run swallows Cancelled, so that nobody can interrupt it")
 
+    def test_assumptions_are_declared(self) -> None:
+        """It declares known assumptions, and speaks through ``ctx.assumed`` of those only, region by region."""
+        check_names(self.module.assumptions)
+        said: list[tuple[str, Any, Any]] = []
+        self._run(self._made(), self.make_inputs(self.size), assumed=said)
+        for name, held, regions in said:
+            assert name in self.module.assumptions, f"run speaks of {name!r}, which it does not declare"
+            fits = regions is None or len(held) > int(np.max(regions, initial=0))
+            assert fits, f"run says of {name!r} less than one flag a region"
+
     def test_any_size(self) -> None:
         """One row, one column, odd sides and a single pixel are images too."""
         for size in _sizes(self.smallest):
@@ -177,10 +188,18 @@ class ModuleContract:
         return self.module(self.make_params())
 
     def _run(
-        self, module: Module[Any, Any, Any], inputs: Any, cancelled: Callable[[], bool] | None = None
+        self,
+        module: Module[Any, Any, Any],
+        inputs: Any,
+        cancelled: Callable[[], bool] | None = None,
+        assumed: list[tuple[str, Any, Any]] | None = None,
     ) -> Ports:
+        def note(what: str, name: str, value: Any) -> None:
+            if assumed is not None and what == "assumed":
+                assumed.append((name, *value))
+
         size = next((array.shape[:2] for array in _arrays(inputs) if array.ndim > 1), None)
-        context = Context(size=size, seed=(7,), per_turn=self.module.per_turn, cancelled=cancelled)
+        context = Context(size=size, seed=(7,), per_turn=self.module.per_turn, cancelled=cancelled, note=note)
         outputs = module.run(inputs, context)
         assert isinstance(outputs, self.module.Outputs), f"run returns {type(outputs).__qualname__}"
         return outputs

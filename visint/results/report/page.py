@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from visint import io
 from visint.results.provenance import installed_version
-from visint.results.report import course, fields, origin
+from visint.results.report import course, fields, origin, premises
 from visint.results.report.legends import gradients
 from visint.results.report.markup import Markup, element, joined
 from visint.results.report.numbers import count, seconds
@@ -39,6 +39,7 @@ SECTIONS = (
     Section("inputs", "Inputs", fields.inputs),
     Section("outputs", "Outputs", fields.outputs),
     Section("evidence", "Evidence", fields.evidence),
+    Section("assumptions", "Assumptions", premises.assumptions),
     Section("convergence", "Convergence", course.convergence),
     Section("timings", "Timings", course.timings),
     Section("measures", "Measures", course.measures),

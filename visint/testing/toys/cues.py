@@ -92,15 +92,23 @@ class BoundaryCueOutputs(Ports):
 
 
 class BoundaryCue(Module[BoundaryCueParams, ImagePorts, BoundaryCueOutputs]):
-    """Boundaries where the intensity steps."""
+    """Boundaries where the intensity steps. Assumes regions of one brightness each, and says where they are."""
 
     name = "boundary_cue"
+    assumptions = ("opacity", "homogeneity")
 
     def run(self, inputs: ImagePorts, ctx: Context) -> BoundaryCueOutputs:
         """Sure of every pixel."""
         ctx.check()
         boundaries, regions = steps(inputs.image, self.params.at)
+        ctx.assumed("homogeneity", even(inputs.image, regions), regions)
         return BoundaryCueOutputs(evidence=BoundariesEvidence.of(boundaries, 1.0, 1.0), regions=regions)
+
+
+def even(image: Array, regions: Array) -> Array:
+    """Bool (3,) by label: whether the intensity in a region stays within 0.1."""
+    inside = [image[regions == label] for label in range(3)]
+    return np.array([one.size == 0 or bool(np.ptp(one) <= 0.1) for one in inside])
 
 
 class PhotometricInputs(Ports):
