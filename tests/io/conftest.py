@@ -120,6 +120,51 @@ def zipped(**members):
     return stream.getvalue()
 
 
+def tiff(samples, *, order="<", photometric=None, rows=None, tile=None, pack=None, **tags):
+    """A TIFF of ``samples`` (H, W) or (H, W, C), written from the format's definition; ``tags`` override."""
+    samples = samples[..., None] if samples.ndim == 2 else samples
+    height, width, channels = samples.shape
+    kind = samples.dtype.kind
+    raw = samples.astype(samples.dtype.newbyteorder(order))
+    rows, columns = tile or (rows or height, width)
+    parts = []
+    for top in range(0, height, rows):
+        for left in range(0, width, columns):
+            part = raw[top : top + rows, left : left + columns]
+            if tile:
+                part = np.pad(part, ((0, rows - part.shape[0]), (0, columns - part.shape[1]), (0, 0)))
+            parts.append((pack or bytes)(part.tobytes()))
+    offsets = np.cumsum([8, *map(len, parts)])[:-1].tolist()
+    if photometric is None:
+        photometric = 2 if channels >= 3 else 1
+    entries = {
+        256: (4, [width]), 257: (4, [height]), 258: (3, [samples.dtype.itemsize * 8] * channels), 259: (3, [1]),
+        262: (3, [photometric]), 277: (3, [channels]), 284: (3, [1]),
+        339: (3, [3 if kind == "f" else 1] * channels),
+        **({322: (4, [columns]), 323: (4, [rows]), 324: (4, offsets), 325: (4, [len(p) for p in parts])} if tile
+           else {273: (4, offsets), 278: (4, [rows]), 279: (4, [len(p) for p in parts])}),
+    }  # fmt: skip
+    for tag, value in tags.items():
+        entries[int(tag[1:])] = value
+    return assembled(b"".join(parts), entries, order)
+
+
+def assembled(body, entries, order):
+    start = 8 + len(body)
+    start += start % 2
+    tail, table = b"", b""
+    after = start + 2 + 12 * len(entries) + 4
+    for tag in sorted(entries):
+        type_, values = entries[tag]
+        data = struct.pack(f"{order}{len(values)}{'?BBHI'[type_]}", *values)
+        if len(data) > 4:
+            data, tail = struct.pack(f"{order}I", after + len(tail)), tail + data
+        table += struct.pack(f"{order}HHI", tag, type_, len(values)) + data.ljust(4, b"\0")
+    head = (b"II*\0" if order == "<" else b"MM\0*") + struct.pack(f"{order}I", start)
+    count = struct.pack(f"{order}H", len(entries))
+    return (head + body).ljust(start, b"\0") + count + table + bytes(4) + tail
+
+
 def jpeg(samples, *flags):
     import cv2
 
@@ -138,6 +183,7 @@ def make():
         stored=stored,
         zipped=zipped,
         jpeg=jpeg,
+        tiff=tiff,
     )
 
 

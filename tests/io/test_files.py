@@ -99,8 +99,8 @@ def test_a_sparse_giant_is_refused_without_reading_it(tmp_path):
     ("data", "words"),
     [
         (b"hello world\n", "is text"),
-        (b"II*\0" + bytes(20), "TIFF"),
-        (b"MM\0*" + bytes(20), "TIFF"),
+        (b"II+\0" + bytes(20), "BigTIFF"),
+        (b"MM\0+" + bytes(20), "BigTIFF"),
         (b"GIF89a", "GIF"),
         (b"BM" + bytes(60), "BMP"),
         (b"RIFF\0\0\0\0WEBP", "WebP"),
@@ -120,7 +120,7 @@ def test_other_formats_are_named_whatever_the_suffix(put, data, words):
     problem = refusal(visint.io.read_image, put(data, "named.png"))
     assert problem.code == "VI302"
     assert words in problem.found
-    assert "PNG, JPEG, PGM/PPM, PFM, npy, npz" in problem.choices
+    assert "PNG, JPEG, PGM/PPM, TIFF, PFM, npy, npz" in problem.choices
 
 
 def test_content_counts_and_not_the_suffix(make, put):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import cv2
 import numpy as np
 import pytest
 
@@ -66,9 +67,14 @@ def test_eight_bit_truth_is_refused_as_disparity(real_data):
         visint.io.read(real_data / "mb2006" / "Plastic" / "disp_left.png", "Disparity")
 
 
-def test_real_formats_that_come_later_are_named(real_data):
-    """TIFF and MATLAB files are refused by name."""
-    with pytest.raises(InputError, match="is a TIFF file"):
-        visint.io.read_image(next((real_data / "extra" / "texture_brodatz").glob("*.tiff")))
+def test_a_real_tiff_against_opencv(real_data):
+    """A scanned texture: the same samples."""
+    path = next((real_data / "extra" / "texture_brodatz").glob("*.tiff"))
+    wanted = cv2.imdecode(np.frombuffer(path.read_bytes(), np.uint8), cv2.IMREAD_UNCHANGED)
+    np.testing.assert_array_equal(visint.io.read_raster(path).samples, wanted)
+
+
+def test_real_formats_that_are_not_read_are_named(real_data):
+    """MATLAB files are refused by name."""
     with pytest.raises(InputError, match="is a MATLAB file"):
         visint.io.read(real_data / "extra" / "mozart_range" / "mozart.mat", "Depth")

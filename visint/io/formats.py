@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import Enum
 
 from visint.io.refusals import broken
+from visint.io.tiff_header import tiff_header
 
 __all__ = ["RASTERS", "STORED", "Format", "format_of"]
 
@@ -15,12 +16,14 @@ class Format(Enum):
     PNG = "PNG"
     JPEG = "JPEG"
     PNM = "PGM/PPM"
+    TIFF = "TIFF"
+    FLOAT_TIFF = "floating-point TIFF"
     PFM = "PFM"
     NPY = "npy"
     NPZ = "npz"
 
 
-RASTERS = frozenset({Format.PNG, Format.JPEG, Format.PNM})
+RASTERS = frozenset({Format.PNG, Format.JPEG, Format.PNM, Format.TIFF})
 """Formats of whole numbers, 8 or 16 bit."""
 
 STORED = frozenset({Format.NPY, Format.NPZ})
@@ -33,6 +36,8 @@ _MARKS: tuple[tuple[bytes, Format], ...] = (
     (b"P3", Format.PNM),
     (b"P5", Format.PNM),
     (b"P6", Format.PNM),
+    (b"II*\0", Format.TIFF),
+    (b"MM\0*", Format.TIFF),
     (b"Pf", Format.PFM),
     (b"PF", Format.PFM),
     (b"\x93NUMPY", Format.NPY),
@@ -40,8 +45,8 @@ _MARKS: tuple[tuple[bytes, Format], ...] = (
     (b"PK\x05\x06", Format.NPZ),
 )
 _STRANGERS = (
-    (b"II*\0", "a TIFF file"),
-    (b"MM\0*", "a TIFF file"),
+    (b"II+\0", "a BigTIFF file"),
+    (b"MM\0+", "a BigTIFF file"),
     (b"GIF8", "a GIF file"),
     (b"BM", "a BMP file"),
     (b"RIFF", "a WebP or another RIFF file"),
@@ -63,13 +68,18 @@ def format_of(data: bytes, name: str) -> Format:
     Raises
     ------
     InputError
-        VI302 if it is none that is read; says what it seems to be.
+        VI302 if it is none that is read, with what it seems to be; or a TIFF file of a sort that is not.
     """
     for mark, format_ in _MARKS:
         if data.startswith(mark):
-            return format_
-    known = ", ".join(format_.value for format_ in Format)
+            return _of_tiff(data, name) if format_ is Format.TIFF else format_
+    known = ", ".join(format_.value for format_ in Format if format_ is not Format.FLOAT_TIFF)
     raise broken(name, f"is {_seems(data)}", choices=f"formats read: {known}")
+
+
+def _of_tiff(data: bytes, name: str) -> Format:
+    """A TIFF file holds whole numbers or floats: its header decides how it is read."""
+    return Format.FLOAT_TIFF if tiff_header(data, name).floats else Format.TIFF
 
 
 def _seems(data: bytes) -> str:

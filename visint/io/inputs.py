@@ -25,11 +25,13 @@ from visint.io.pfm import pfm_values
 from visint.io.raster import Raster, raster_of
 from visint.io.refusals import unfit
 from visint.io.stored import conform, typed
+from visint.io.tiff import tiff_samples
+from visint.io.tiff_header import tiff_header
 
 __all__ = ["read", "read_color", "read_image"]
 
-_FLOATS = STORED | {Format.PFM}
-_EXACT = STORED | {Format.PNG, Format.PNM}
+_FLOATS = STORED | {Format.PFM, Format.FLOAT_TIFF}
+_EXACT = STORED | {Format.PNG, Format.PNM, Format.TIFF}
 _TAKES: Mapping[str, frozenset[Format]] = MappingProxyType(
     {
         "Image": _FLOATS | RASTERS,
@@ -39,7 +41,8 @@ _TAKES: Mapping[str, frozenset[Format]] = MappingProxyType(
         "Disparity": _FLOATS | {Format.PNG},  # 16-bit, by KITTI's rule
         "Normals": _FLOATS,
         "Sigma": _FLOATS,
-        "Confidence": _EXACT | {Format.PFM},
+        "Incidence": _FLOATS,
+        "Confidence": _EXACT | _FLOATS,
         "Mask": _EXACT,
         "Boundaries": _EXACT,
         "Regions": _EXACT,
@@ -68,8 +71,8 @@ def read(
     Parameters
     ----------
     path
-        PNG, JPEG, PGM/PPM, PFM, npy or npz, told apart by content; ``calib.txt`` for a Camera. From an npz
-        file the array named like the kind in small letters is taken (``normals``), else its only one.
+        PNG, JPEG, TIFF, PGM/PPM, PFM, npy or npz, told apart by content; a calibration for a Camera. From an
+        npz file the array named like the kind in small letters is taken (``normals``), else its only one.
     kind
         A built-in field kind, or the spec of a plugin's own (read from npy and npz).
     gamma
@@ -167,6 +170,8 @@ def _from_raster(raster: Raster, kind: str, name: str, gamma: float | None) -> A
 def _stored(data: bytes, format_: Format, kind: str, name: str, limits: Limits) -> Array:
     if format_ is Format.PFM:
         return pfm_values(data, name, limits)
+    if format_ is Format.FLOAT_TIFF:
+        return tiff_samples(data, tiff_header(data, name), name, limits)
     if format_ is Format.NPY:
         return npy_array(data, name, limits)
     return npz_array(data, kind.rpartition(".")[2].lower(), name, limits)

@@ -1,4 +1,4 @@
-"""Rasters: the samples of a PNG, JPEG, PGM or PPM file as they are stored."""
+"""Rasters: the samples of a PNG, JPEG, TIFF, PGM or PPM file as they are stored."""
 
 from __future__ import annotations
 
@@ -9,12 +9,14 @@ import numpy as np
 
 from visint.arrays import Array, read_only
 from visint.io.files import Note, read_bytes, shown, silent
-from visint.io.formats import Format, format_of
+from visint.io.formats import RASTERS, Format, format_of
 from visint.io.jpeg import jpeg_header
 from visint.io.limits import LIMITS, Limits
 from visint.io.png import essential_png, png_header
 from visint.io.pnm import pnm_samples
 from visint.io.refusals import broken, unfit
+from visint.io.tiff import tiff_samples
+from visint.io.tiff_header import tiff_header
 
 __all__ = ["Raster", "raster_of", "read_raster"]
 
@@ -54,21 +56,24 @@ def read_raster(path: str | Path, *, note: Note = silent, limits: Limits = LIMIT
     Raises
     ------
     InputError
-        VI301 if the file cannot be read, VI302 if it is broken, VI303 if too large, VI305 if it is PFM or npy.
+        VI301 if the file cannot be read, VI302 if it is broken, VI303 if too large, VI305 if it holds
+        floating-point numbers.
     """
     name, data = shown(path), read_bytes(path, most=limits.most_bytes)
     format_ = format_of(data, name)
-    if format_ in (Format.PFM, Format.NPY, Format.NPZ):
-        raise unfit(name, f"is a {format_.value} file; wants PNG, JPEG or PGM/PPM")
+    if format_ not in RASTERS:
+        raise unfit(name, f"is a {format_.value} file; wants PNG, JPEG, PGM/PPM or a TIFF of whole numbers")
     return raster_of(data, format_, name, note, limits)
 
 
 def raster_of(data: bytes, format_: Format, name: str, note: Note, limits: Limits) -> Raster:
-    """The samples in the bytes of a PNG, JPEG or PGM/PPM file; raises as :func:`read_raster`."""
+    """The samples in the bytes of a PNG, JPEG, TIFF or PGM/PPM file; raises as :func:`read_raster`."""
     if format_ is Format.PNM:
         samples, top = pnm_samples(data, name, limits)
     elif format_ is Format.JPEG:
         samples, top = _jpeg(data, name, limits), 255
+    elif format_ is Format.TIFF:
+        samples, top = _tiff(data, name, note, limits)
     else:
         samples, top = _png(data, name, note, limits)
     return Raster(read_only(samples), top)
@@ -81,14 +86,30 @@ def _jpeg(data: bytes, name: str, limits: Limits) -> Array:
     return pixels if pixels.ndim == 2 else pixels[..., ::-1]
 
 
+def _tiff(data: bytes, name: str, note: Note, limits: Limits) -> tuple[Array, int]:
+    header = tiff_header(data, name)
+    samples = tiff_samples(data, header, name, limits)
+    top = int(np.iinfo(samples.dtype).max)
+    if header.pages:
+        note(f"{name}: it has several pages; the first one is read")
+    if header.channels > header.colours:
+        samples = _without_alpha(samples, name, note)
+    return (samples.dtype.type(top) - samples if header.inverted else samples), top
+
+
+def _without_alpha(pixels: Array, name: str, note: Note) -> Array:
+    """The samples but for their last channel, which makes them transparent."""
+    if (pixels[..., -1] != np.iinfo(pixels.dtype).max).any():
+        note(f"{name}: its alpha channel is dropped; colours are taken as they are stored")
+    return pixels[..., 0] if pixels.shape[2] == 2 else pixels[..., :-1]
+
+
 def _png(data: bytes, name: str, note: Note, limits: Limits) -> tuple[Array, int]:
     header = png_header(data, name)
     limits.check_image(name, header.width, header.height, header.sample_bytes)
     pixels = _decoded(essential_png(data, header, name), name, (header.height, header.width))
     if pixels.ndim == 3 and pixels.shape[2] == 4:
-        if (pixels[..., 3] != np.iinfo(pixels.dtype).max).any():
-            note(f"{name}: its alpha channel is dropped; colours are taken as they are stored")
-        pixels = pixels[..., :3]
+        pixels = _without_alpha(pixels, name, note)
     if pixels.ndim == 3:
         pixels = pixels[..., 0] if header.grey else pixels[..., ::-1]
     if header.grey and header.depth < 8:  # the decoder spreads 1, 2 and 4 bits over 0 … 255

@@ -19,10 +19,12 @@ _RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
         "Image": (0, 1),
         "Color": (0, 1),
         "Confidence": (0, 1),
+        "Incidence": (0, 1),
+        "BoundaryKinds": (0, 5),
         "Sigma": (0, math.inf),
     }
 )
-_WORDS = {"f": "floating-point", "i": "whole", "b": "boolean"}
+_WORDS = {"f": "floating-point", "i": "whole", "u": "whole", "b": "boolean"}
 
 
 def typed(array: Array, spec: ArraySpec, name: str, note: Note) -> Array:
@@ -37,7 +39,7 @@ def typed(array: Array, spec: ArraySpec, name: str, note: Note) -> Array:
         VI305 if the array is of another sort of number, or out of range.
     """
     target = np.dtype(spec.dtype)
-    if array.dtype.kind.replace("u", "i") != target.kind:
+    if array.dtype.kind.replace("u", "i") != target.kind.replace("u", "i"):
         wanted = f"{_WORDS.get(target.kind, '')} numbers ({target})"
         write = f"array.astype({spec.dtype!r})"
         raise unfit(name, f"holds {array.dtype}; a {spec.kind} wants {wanted}", write=write)
@@ -46,7 +48,7 @@ def typed(array: Array, spec: ArraySpec, name: str, note: Note) -> Array:
     if target.kind == "f":
         _check_rounding(array, value, spec, name, note)
         value[np.isinf(value)] = np.nan
-    elif target.kind == "i" and not np.array_equal(value, array):
+    elif target.kind in "iu" and not np.array_equal(value, array):
         raise unfit(name, f"holds whole numbers beyond {target}; a {spec.kind} wants {target}")
     _check_range(value, spec, name)
     return value
