@@ -88,7 +88,7 @@ def _regions(name: str, value: Array) -> Files:
 
 
 _BY_KIND: Mapping[str, Callable[[str, Any], Files]] = {
-    **dict.fromkeys(("Depth", "Relief", "Image", "Color", "Confidence", "Sigma"), _pfm),
+    **dict.fromkeys(("Depth", "Relief", "Image", "Color", "Confidence", "Sigma", "Incidence"), _pfm),
     "Disparity": _disparity,
     "Normals": _normals,
     "Boundaries": _mask,
