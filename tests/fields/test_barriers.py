@@ -49,7 +49,7 @@ def test_the_mean_is_of_the_known_on_ones_own_side():
 
 
 def test_a_plane_has_no_bend_and_a_parabola_its_own():
-    """x² + ½y² rises by (1 + ½)/2 from a pixel to the mean of its four neighbours, x² alone by 1 along a wall."""
+    """x² + ½y² rises by (1 + ½)/2 from a pixel to the mean of its neighbours, x² alone by 1 along a wall."""
     y, x = np.mgrid[:8, :9].astype(np.float32)
     free = barriers.links(None, y.shape)
     assert np.allclose(barriers.bend(3 * x - 2 * y + 1, free), 0, atol=1e-5)

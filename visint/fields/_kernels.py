@@ -70,8 +70,11 @@ def bend(values, reached, found):
 
 @njit(cache=True, nogil=True)
 def bend_of_slopes(slopes, reached, found):
-    """The same from slopes (H, W, 2): a step to a neighbour is the mean of the two slopes, so a pair mean
-    exceeds the value by a quarter of the difference of the outer slopes."""
+    """The same from slopes (H, W, 2).
+
+    A step to a neighbour is the mean of the two slopes, so a pair mean exceeds the value by a quarter of the
+    difference of the outer slopes.
+    """
     rows, columns = slopes.shape[:2]
     quarter = np.float32(0.25)
     for y in range(rows):

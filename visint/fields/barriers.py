@@ -13,7 +13,7 @@ from visint.arrays import Array
 __all__ = ["AROUND", "EIGHT", "FOUR", "bend", "bend_of_slopes", "links", "mean"]
 
 AROUND = ((-1, 0), (0, 1), (1, 0), (0, -1), (-1, -1), (-1, 1), (1, 1), (1, -1))
-"""The neighbours (row, column) in the order of the bits of :func:`links`: above, right, below, left; corners."""
+"""Neighbours (row, column) in the order of the bits of :func:`links`: above, right, below, left; corners."""
 FOUR, EIGHT = 4, 8
 """How many of :data:`AROUND` a neighbourhood has."""
 
