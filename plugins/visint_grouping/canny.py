@@ -57,6 +57,7 @@ class Canny(Module[CannyParams, CannyInputs, CannyOutputs]):
     """
 
     name = "canny"
+    assumptions = ("local_spatial_interaction", "continuity", "gaussian_noise")
 
     def run(self, inputs: CannyInputs, ctx: Context) -> CannyOutputs:
         """Edges of the image in grey levels of even noise."""

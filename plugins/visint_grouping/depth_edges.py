@@ -46,6 +46,7 @@ class DepthEdges(Module[DepthEdgesParams, DepthEdgesInputs, DepthEdgesOutputs]):
     """
 
     name = "depth_edges"
+    assumptions = ("smoothness", "opacity")
 
     def run(self, inputs: DepthEdgesInputs, ctx: Context) -> DepthEdgesOutputs:
         """Jumps of depth at this level."""

@@ -57,6 +57,7 @@ class Diffuse(Module[DiffuseParams, DiffuseInputs, DiffuseOutputs]):
     """
 
     name = "diffuse"
+    assumptions = ("smoothness", "opacity")
 
     def run(self, inputs: DiffuseInputs, ctx: Context) -> DiffuseOutputs:
         """Diffused depth; unknown where a region knows nothing within reach."""

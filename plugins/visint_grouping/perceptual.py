@@ -67,6 +67,7 @@ class Perceptual(Module[PerceptualParams, GroupingInputs, GroupingOutputs]):
     """
 
     name = "perceptual"
+    assumptions = ("general_viewpoint", "coherence", "cohesiveness", "gaussian_noise")
 
     def run(self, inputs: GroupingInputs, ctx: Context) -> GroupingOutputs:
         """Boundaries of the view; nothing is kept from turn to turn but what the map brings back."""

@@ -62,6 +62,7 @@ class SplitMerge(Module[SplitMergeParams, SplitMergeInputs, SplitMergeOutputs]):
     """
 
     name = "split_merge"
+    assumptions = ("cohesiveness", "gaussian_noise")
 
     def run(self, inputs: SplitMergeInputs, ctx: Context) -> SplitMergeOutputs:
         """Regions of the image in grey levels of even noise."""

@@ -68,6 +68,7 @@ class Voronoi(Module[VoronoiParams, GroupingInputs, GroupingOutputs]):
     """
 
     name = "voronoi"
+    assumptions = ("general_viewpoint", "coherence", "piecewise_continuity")
 
     def run(self, inputs: GroupingInputs, ctx: Context) -> GroupingOutputs:
         """Boundaries of the view; nothing is kept from turn to turn but what the map brings back."""

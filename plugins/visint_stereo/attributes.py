@@ -56,6 +56,7 @@ class Attributes(Module[AttributesParams, AttributesInputs, AttributesOutputs]):
     """
 
     name = "attributes"
+    assumptions = ("gaussian_noise",)
 
     def run(self, inputs: AttributesInputs, ctx: Context) -> AttributesOutputs:
         """The attributes, scaled by the noise of the pair (measured here, the same for both views)."""

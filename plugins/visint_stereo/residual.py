@@ -53,6 +53,7 @@ class Residual(Module[ResidualParams, ResidualInputs, ResidualOutputs]):
     """
 
     name = "residual"
+    assumptions = ("opacity", "brightness_constancy", "rectified_views", "sufficient_context")
 
     def run(self, inputs: ResidualInputs, ctx: Context) -> ResidualOutputs:
         """One linearisation; no loop, no memory."""

@@ -82,6 +82,7 @@ class Moments(Module[MomentsParams, MomentsInputs, MomentsOutputs]):
     """
 
     name = "moments"
+    assumptions = ("local_spatial_interaction", "sufficient_context")
 
     def run(self, inputs: MomentsInputs, ctx: Context) -> MomentsOutputs:
         """Moments of the image's size."""

@@ -63,6 +63,7 @@ class TextureRegions(Module[TextureRegionsParams, TextureRegionsInputs, TextureR
     """
 
     name = "regions"
+    assumptions = ("homogeneity", "cohesiveness")
 
     def run(self, inputs: TextureRegionsInputs, ctx: Context) -> TextureRegionsOutputs:
         """Regions of the moments' size."""

@@ -85,6 +85,13 @@ class SuperBovik(Module[SuperBovikParams, SuperBovikInputs, SuperBovikOutputs]):
     """
 
     name = "super_bovik"
+    assumptions = (
+        "homogeneity",
+        "smoothness",
+        "sufficient_context",
+        "regular_projective_geometry",
+        "perfect_segmentation",
+    )
 
     def run(self, inputs: SuperBovikInputs, ctx: Context) -> SuperBovikOutputs:
         """Normals of the moments' size."""
@@ -104,6 +111,8 @@ class SuperBovik(Module[SuperBovikParams, SuperBovikInputs, SuperBovikOutputs]):
             if estimate is not None:
                 answer.take(part, estimate, box, inside)
         ctx.measure("mean reliability", float(answer.reliability.mean()))
+        for name in ("homogeneity", "sufficient_context"):
+            ctx.assumed(name, *answer.found(name, (rows, columns)))
         normals, ambiguity = answer.over((rows, columns), texture)
         return SuperBovikOutputs(normals=normals, ambiguity=ambiguity)
 

@@ -8,7 +8,7 @@ from visint.arrays import Array
 from visint.fields import DisparityEvidence
 from visint_stereo.descent.judgement import Judgement
 
-__all__ = ["evidence_of", "reliability", "sigma_of", "signs"]
+__all__ = ["evidence_of", "reliability", "sigma_of", "signs", "tested"]
 
 SLIGHT = 1.0
 """Σ w R² that two equal views differ by all the same, squared scaled grades."""
@@ -16,6 +16,9 @@ WIDEST = 100.0
 """Sigma is cut here, px."""
 TOO_WIDE = 5.0
 """A match of this sigma, px, rests on its neighbours alone: its reliability is halved."""
+
+UNLIKE = 100.0
+"""Σ w R² from which on two places do not look alike: ten scaled grades, five times the usual noise."""
 
 WEIGHTS = np.array([-0.768, -0.665, -0.567], dtype=np.float32)
 BIAS = np.float32(2.496)
@@ -43,6 +46,12 @@ def reliability(judgement: Judgement) -> Array:
     alone = (sigma_of(judgement) / TOO_WIDE) ** 2
     speaks = (judgement.support > 0) & np.isfinite(judgement.gap)
     return np.asarray(np.where(speaks, 1 / ((1 + np.exp(-odds)) * (1 + alone)), 0), dtype=np.float32)
+
+
+def tested(judgement: Judgement) -> dict[str, Array]:
+    """Where two premises hold, bool (H, W) each: enough texture around, and equal brightness of both views."""
+    precise = judgement.support * TOO_WIDE**2 >= judgement.error + SLIGHT
+    return {"sufficient_context": precise, "brightness_constancy": judgement.error <= UNLIKE}
 
 
 def evidence_of(field: Array, judgement: Judgement) -> DisparityEvidence:

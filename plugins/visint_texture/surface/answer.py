@@ -7,7 +7,7 @@ import numpy as np
 from visint.arrays import Array
 from visint.fields import NormalsEvidence
 from visint_texture.surface.estimate import Estimate
-from visint_texture.surface.judgement import judged
+from visint_texture.surface.judgement import judged, tested
 from visint_texture.surface.patches import Box
 from visint_texture.surface.sites import Sites, spread_out
 
@@ -22,6 +22,8 @@ class Answer:
         self.sigma = sigma
         self.reliability = reliability
         self.clarity = clarity
+        self.patch = np.zeros(clarity.shape, np.int32)
+        self.premises: list[dict[str, bool]] = []
 
     @classmethod
     def empty(cls, shape: tuple[int, int]) -> Answer:
@@ -32,10 +34,18 @@ class Answer:
     def take(self, sites: Sites, estimate: Estimate, box: Box, inside: Array) -> None:
         """One patch's estimate, where it is ``inside`` its box."""
         sigma, reliability = judged(sites, estimate)
+        self.premises.append(tested(sites, estimate))
+        self.patch[box][inside] = len(self.premises)
         self.normals[box][inside] = estimate.normals[inside]
         self.sigma[box][inside] = sigma[inside]
         self.reliability[box][inside] = reliability[inside]
         self.clarity[box][inside] = estimate.clarity[inside]
+
+    def found(self, name: str, size: tuple[int, int]) -> tuple[Array, Array]:
+        """Whether the assumption ``name`` held, bool by label, and the patches int32 (H, W) it is said of."""
+        rows, columns = ((np.arange(n) * k) // n for n, k in zip(size, self.patch.shape, strict=True))
+        held = np.array([False, *(each[name] for each in self.premises)])
+        return held, self.patch[rows[:, None], columns[None, :]]
 
     def over(self, size: tuple[int, int], texture: Array) -> tuple[NormalsEvidence, Array]:
         """Evidence and ambiguity (H, W) over an image of ``size``; silent where ``texture`` is 0."""

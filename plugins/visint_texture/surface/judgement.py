@@ -9,10 +9,14 @@ from visint_texture.geometry.orientation import slant_and_tilt
 from visint_texture.surface.estimate import Estimate
 from visint_texture.surface.sites import Sites
 
-__all__ = ["judged"]
+__all__ = ["judged", "tested"]
 
 FEWEST = 12
 """A region of fewer sites says nothing."""
+LEFT = 0.58
+"""Log moments (rms) that a homogeneous texture may leave unexplained: the gate is one half there."""
+STRIPED = 1.5
+"""Eccentricity from which on a texture counts as stripes: the gate is one half there."""
 WINDOWS = 5.0
 """A window covers about 25 sites, so a region's own spread understates its error by about five."""
 WAVES = 0.1
@@ -39,6 +43,16 @@ def judged(sites: Sites, estimate: Estimate) -> tuple[Array, Array]:
         np.broadcast_to(stripes, sites.shape),
     )
     return sigma, np.clip(sites.weight, 0, 1) * np.multiply.reduce(gates)
+
+
+def tested(sites: Sites, estimate: Estimate) -> dict[str, bool]:
+    """Which of its assumptions a region keeps: those that :func:`judged` weighs, where they half count.
+
+    Homogeneity: the surface explains the moments. Sufficient context: the texture is no stripes.
+    """
+    weight = np.maximum(sites.weight.sum(), 1e-9)
+    left = np.sqrt(((estimate.residual**2).sum(axis=-1) * sites.weight).sum() / weight)
+    return {"homogeneity": bool(left < LEFT), "sufficient_context": estimate.eccentricity < STRIPED}
 
 
 def _sigma(estimate: Estimate, left: Array, wave: float) -> Array:
