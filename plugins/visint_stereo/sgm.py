@@ -90,6 +90,7 @@ class SemiGlobal(Module[SemiGlobalParams, SemiGlobalInputs, SemiGlobalOutputs]):
     """
 
     name = "sgm"
+    assumptions = ("opacity", "smoothness", "lambertian_reflectance", "rectified_views", "sufficient_context")
 
     def run(self, inputs: SemiGlobalInputs, ctx: Context) -> SemiGlobalOutputs:
         """Match the pair; arrays of the images' size, in pixels of the level."""

@@ -9,10 +9,13 @@ from visint.arrays import Array, Boundaries, Disparity, Features
 from visint.fields import DisparityEvidence
 from visint.module import Context, Module, Params, Ports
 from visint_stereo.descent.judgement import judged
-from visint_stereo.descent.reliability import evidence_of
+from visint_stereo.descent.reliability import evidence_of, tested
 from visint_stereo.descent.start import carried, complete, left_from_right, right_from_left, shift_between
 
 __all__ = ["Weng"]
+
+HELD_IN_FIRST = np.array([False, True, False])
+"""A premise held in region 1, and not in region 2."""
 
 
 class WengParams(Params):
@@ -75,6 +78,14 @@ class Weng(Module[WengParams, WengInputs, WengOutputs]):
     """
 
     name = "weng"
+    assumptions = (
+        "opacity",
+        "smoothness",
+        "lambertian_reflectance",
+        "brightness_constancy",
+        "rectified_views",
+        "sufficient_context",
+    )
 
     def run(self, inputs: WengInputs, ctx: Context) -> WengOutputs:
         """Update both fields ``iterations`` times."""
@@ -90,6 +101,8 @@ class Weng(Module[WengParams, WengInputs, WengOutputs]):
             )
             ctx.check()
         judgement = judged(left, right, self._weights, fields)
+        for premise, holds in tested(judgement).items():
+            ctx.assumed(premise, HELD_IN_FIRST, np.where(holds, np.int32(1), np.int32(2)))
         return WengOutputs(left=fields[0], right=fields[1], disparity=evidence_of(fields[0], judgement))
 
     @property
