@@ -18,7 +18,7 @@ TOO_WIDE = 5.0
 """A match of this sigma, px, rests on its neighbours alone: its reliability is halved."""
 
 UNLIKE = 100.0
-"""Σ w R² from which on two places do not look alike: ten scaled grades, five times the usual noise."""
+"""Σ w R² from which on two places do not look alike: ten grades, twice the usual noise."""
 
 WEIGHTS = np.array([-0.768, -0.665, -0.567], dtype=np.float32)
 BIAS = np.float32(2.496)
