@@ -10,7 +10,8 @@ from visint.fields import DisparityEvidence
 from visint.module import Context, Module, Params, Ports
 from visint_stereo.descent.judgement import judged
 from visint_stereo.descent.reliability import evidence_of, tested
-from visint_stereo.descent.start import carried, complete, left_from_right, right_from_left, shift_between
+from visint_stereo.descent.sides import one_side, seen_in_the_other_view, sides_of
+from visint_stereo.descent.start import complete, left_from_right, right_from_left, shift_between
 
 __all__ = ["Weng"]
 
@@ -78,6 +79,7 @@ class Weng(Module[WengParams, WengInputs, WengOutputs]):
     """
 
     name = "weng"
+    version = "2"
     assumptions = (
         "opacity",
         "smoothness",
@@ -93,11 +95,11 @@ class Weng(Module[WengParams, WengInputs, WengOutputs]):
             raise ValueError(f"attributes wants two images, left and right; got {len(inputs.attributes)}")
         left, right = inputs.attributes
         fields = self._start(inputs)
-        barriers = _barriers(inputs.boundaries, fields[0].shape, fields[1])
+        sides = _sides(inputs.boundaries, left[..., 0], fields[1])
         for _ in range(self.params.iterations):
             fields = (
-                self._sweep(left, right, barriers[0], -1, fields[0]),
-                self._sweep(right, left, barriers[1], +1, fields[1]),
+                self._sweep(left, right, sides[0], -1, fields[0]),
+                self._sweep(right, left, sides[1], +1, fields[1]),
             )
             ctx.check()
         judgement = judged(left, right, self._weights, fields)
@@ -109,13 +111,13 @@ class Weng(Module[WengParams, WengInputs, WengOutputs]):
     def _weights(self) -> Array:
         return np.asarray(self.params.weights, dtype=np.float32)
 
-    def _sweep(self, here: Array, there: Array, barriers: Array, sign: int, field: Array) -> Array:
+    def _sweep(self, here: Array, there: Array, sides: Array, sign: int, field: Array) -> Array:
         from visint_stereo.descent import _kernels
 
         numbers = (np.float32(n) for n in (self.params.smoothness, self.params.reach, self.params.across, sign))
         smoothness, reach, across, way = numbers
         after = np.empty_like(field)
-        _kernels.sweep(here, there, self._weights, smoothness, reach, barriers, across, way, field, after)
+        _kernels.sweep(here, there, self._weights, smoothness, reach, sides, across, way, field, after)
         return after
 
     def _start(self, inputs: WengInputs) -> tuple[Array, Array]:
@@ -131,9 +133,10 @@ class Weng(Module[WengParams, WengInputs, WengOutputs]):
         return left, right_from_left(left) if right is None else complete(right)
 
 
-def _barriers(boundaries: Array | None, shape: tuple[int, int], right: Array) -> tuple[Array, Array]:
-    """Boundaries as bool (H, W) for either view: the left view's own, and where ``right`` carries them."""
-    if boundaries is None:
-        none = np.zeros(shape, dtype=bool)
+def _sides(boundaries: Array | None, brightness: Array, right: Array) -> tuple[Array, Array]:
+    """The sides of either view: of the left by its ``boundaries``, of the right as its field carries them."""
+    if boundaries is None or not boundaries.any():
+        none = one_side(brightness.shape)
         return none, none
-    return boundaries, carried(boundaries, right)
+    sides = sides_of(boundaries, np.ascontiguousarray(brightness))
+    return sides, seen_in_the_other_view(sides, right)

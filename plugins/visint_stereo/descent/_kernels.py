@@ -9,12 +9,12 @@ from numba import njit
 
 
 @njit(cache=True, nogil=True)
-def sweep(here, there, weights, smoothness, reach, barriers, across, sign, before, after):
+def sweep(here, there, weights, smoothness, reach, sides, across, sign, before, after):
     """One Gauss-Newton update of a field: d = d̄ - Σ w J R(d̄) / (λ + Σ w J²)  (Eq. 3.1, corrected).
 
     Parameters: ``here`` and ``there`` float32 (H, W, 4), attributes of the view that carries the field and of
-    the other; ``sign`` -1 if the field is the left view's (its match lies at x - d), else +1; ``barriers`` bool
-    (H, W) with ``across`` the weight of a neighbour on the other side; ``before`` and ``after`` the field,
+    the other; ``sign`` -1 if the field is the left view's (its match lies at x - d), else +1; ``sides`` int32
+    (H, W) with ``across`` the weight of a neighbour on another side; ``before`` and ``after`` the field,
     float32 (H, W). No step goes further than ``reach`` px from d̄: beyond, the linear model is not to be
     believed. Matches outside the other image take d̄.
     """
@@ -29,7 +29,7 @@ def sweep(here, there, weights, smoothness, reach, barriers, across, sign, befor
                 nx = x + (side == 2) - (side == 3)
                 if ny < 0 or ny >= rows or nx < 0 or nx >= columns:
                     continue
-                weight = across if barriers[y, x] or barriers[ny, nx] else one
+                weight = one if sides[y, x] == sides[ny, nx] else across
                 total += weight * before[ny, nx]
                 share += weight
             mean = total / share if share > 0 else before[y, x]
@@ -52,6 +52,28 @@ def sweep(here, there, weights, smoothness, reach, barriers, across, sign, befor
                 slope += weights[kind] * change * residual
                 strength += weights[kind] * change * change
             after[y, x] = mean - min(max(slope / (smoothness + strength), -reach), reach)
+
+
+@njit(cache=True, nogil=True)
+def take_sides(brightness, sides):
+    """Gives each pixel of side 0 the side of its neighbour most like it; True if there were any to give."""
+    rows, columns = sides.shape
+    before = sides.copy()
+    given = False
+    for y in range(rows):
+        for x in range(columns):
+            if before[y, x] != 0:
+                continue
+            least = np.float32(np.inf)
+            for side in range(4):
+                ny = y + (side == 0) - (side == 1)
+                nx = x + (side == 2) - (side == 3)
+                if ny < 0 or ny >= rows or nx < 0 or nx >= columns or before[ny, nx] == 0:
+                    continue
+                unlike = abs(brightness[ny, nx] - brightness[y, x])
+                if unlike < least:
+                    least, sides[y, x], given = unlike, before[ny, nx], True
+    return given
 
 
 @njit(cache=True, nogil=True)

@@ -6,7 +6,7 @@ import numpy as np
 
 from visint.arrays import Array
 
-__all__ = ["carried", "complete", "left_from_right", "right_from_left", "shift_between"]
+__all__ = ["complete", "left_from_right", "right_from_left", "shift_between"]
 
 COLUMNS = 128
 """Width of the images on which the first shift is sought."""
@@ -74,12 +74,3 @@ def right_from_left(left: Array) -> Array:
 def left_from_right(right: Array) -> Array:
     """The left view's disparity that a right field (H, W) implies: the same, seen in a mirror."""
     return np.ascontiguousarray(right_from_left(np.ascontiguousarray(right[:, ::-1]))[:, ::-1])
-
-
-def carried(marks: Array, right: Array) -> Array:
-    """Bool marks of the left view (H, W) as the right view sees them through its field."""
-    from visint_stereo.descent import _kernels
-
-    found = np.empty_like(right)
-    _kernels.follow(marks.astype(np.float32), right, np.float32(1), found)
-    return np.asarray(found >= 0.5)
