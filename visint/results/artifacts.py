@@ -14,6 +14,7 @@ from visint.arrays import Array
 from visint.fields import geometry
 from visint.fields.evidence import Evidence, known
 from visint.results import pictures
+from visint.results.against import read_against
 from visint.results.provenance import Source, provenance
 from visint.results.report import report
 
@@ -26,14 +27,20 @@ Files = Iterator[tuple[str, bytes]]
 
 
 def save(
-    result: Result, folder: str | PathLike[str], *, force: bool, sources: Mapping[str, Source]
+    result: Result,
+    folder: str | PathLike[str],
+    *,
+    force: bool,
+    sources: Mapping[str, Source],
+    against: str | PathLike[str] | None = None,
 ) -> tuple[str, ...]:
     """Writes every file of ``result`` into ``folder``, all or none; gives their names."""
+    other = None if against is None else read_against(against)
     with io.OutputFolder(fspath(folder), force=force) as place:
         for name, data in files_of(result):
             place.write(name, data)
         place.write("profile.json", _json(_profile(result)))
-        place.write("report.html", report(result).encode())
+        place.write("report.html", report(result, other).encode())
         files = [*place.files, "run.json"]
         place.write("run.json", _json({**provenance(result, sources), "files": files}))
         return place.files

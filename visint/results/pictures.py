@@ -27,6 +27,8 @@ __all__ = [
     "of_reference",
     "of_regions",
     "of_scalar",
+    "on_nothing",
+    "reference",
     "span",
     "turbo",
 ]
@@ -115,11 +117,31 @@ def of_image(value: Array) -> Array:
     return np.repeat(rgb[..., None], 3, axis=-1) if rgb.ndim == 2 else rgb
 
 
-def of_reference(result: Result) -> Array | None:
-    """The reference view, the first image among the inputs; None if there is none."""
+def reference(result: Result) -> tuple[str, Array] | None:
+    """The reference view, the first image among the inputs, and the input's name; None if there is none."""
     for name, spec in result.graph.inputs.items():
         value: Any = result.inputs.get(name)
         first = value[0] if isinstance(value, tuple) and value else value
         if spec.kind in ("Image", "Color") and isinstance(first, np.ndarray):
-            return of_image(first)
+            return name, first
     return None
+
+
+def of_reference(result: Result) -> Array | None:
+    """The reference view as a picture; None if there is none."""
+    found = reference(result)
+    return None if found is None else of_image(found[1])
+
+
+def of_change(value: Array, most: float) -> Array:
+    """A signed map (H, W): blue at −``most``, white at 0, red at ``most``; unknown is grey."""
+    share = np.clip(np.nan_to_num(value.astype(np.float64) / most), -1, 1)[..., None]
+    blue, red = np.array([33, 102, 172]), np.array([178, 24, 43])
+    rgb = 255 - np.abs(share) * (255 - np.where(share < 0, blue, red))
+    return np.where(known(value)[..., None], rgb, UNKNOWN).astype(np.uint8)
+
+
+def on_nothing(picture: Array) -> Array:
+    """A picture of lines, uint8 (H, W, 4): what is black in ``picture`` (H, W, 3) is transparent."""
+    alpha = np.where(picture.any(axis=-1, keepdims=True), np.uint8(255), np.uint8(0))
+    return np.concatenate([picture, alpha], axis=-1)

@@ -117,6 +117,7 @@ class Result(Mapping[str, Any]):
         *,
         force: bool = False,
         sources: Mapping[str, Source] | None = None,
+        against: str | PathLike[str] | None = None,
     ) -> tuple[str, ...]:
         """Writes every artifact, and gives their file names; all are there, or none.
 
@@ -128,15 +129,19 @@ class Result(Mapping[str, Any]):
             Take a folder that holds other things too.
         sources
             The files the inputs were read from; with them the run can be done again from ``run.json``.
+        against
+            The folder of another run: the report compares this one with it, map by map.
 
         Raises
         ------
+        InputError
+            If the other run cannot be read.
         OutputError
             If the folder is refused or the disk is.
         """
         from visint.results.artifacts import save
 
-        return save(self, folder, force=force, sources=sources or {})
+        return save(self, folder, force=force, sources=sources or {}, against=against)
 
 
 def gather(  # noqa: PLR0913 - all that a run leaves, put together in this one place

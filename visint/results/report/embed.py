@@ -16,22 +16,25 @@ _LOSSLESS = 48_000
 _QUALITY = 88
 
 
-def embedded(picture: Array, alt: str, side: int) -> Markup:
+def embedded(picture: Array, alt: str, side: int, name: str | None = None) -> Markup:
     """An ``<img>`` that holds ``picture``.
 
     Parameters
     ----------
     picture
-        uint8 (H, W, 3), RGB.
+        uint8 (H, W, 3), RGB; or (H, W, 4), what is transparent apart.
     alt
         What is said in its place.
     side
         The longest side in pixels; a larger picture is reduced.
+    name
+        Its ``id``, where the script needs to find it.
     """
     reduced = _reduced(picture, side)
     height, width = reduced.shape[:2]
     return element(
         "img",
+        id=name,
         src=_data(reduced),
         alt=alt,
         width=width,
@@ -53,8 +56,8 @@ def _reduced(picture: Array, side: int) -> Array:
 
 def _data(picture: Array) -> str:
     """PNG where it is small, as lines and labels are; else JPEG with whole colours, if that is smaller."""
-    png = io.encode_png(picture)
-    jpeg = _jpeg(picture) if len(png) > _LOSSLESS else png
+    png = io.encode_png(picture) if picture.shape[2] == 3 else _transparent(picture)
+    jpeg = _jpeg(picture) if len(png) > _LOSSLESS and picture.shape[2] == 3 else png
     if len(jpeg) < len(png):
         return "data:image/jpeg;base64," + base64.b64encode(jpeg).decode()
     return "data:image/png;base64," + base64.b64encode(png).decode()
@@ -67,4 +70,12 @@ def _jpeg(picture: Array) -> bytes:
     how = [cv2.IMWRITE_JPEG_QUALITY, _QUALITY, cv2.IMWRITE_JPEG_SAMPLING_FACTOR, whole]
     done, data = cv2.imencode(".jpg", np.ascontiguousarray(picture[..., ::-1]), how)
     assert done, "uint8 (H, W, 3) is what JPEG holds"
+    return bytes(data.tobytes())
+
+
+def _transparent(picture: Array) -> bytes:
+    import cv2
+
+    done, data = cv2.imencode(".png", np.ascontiguousarray(picture[..., [2, 1, 0, 3]]))
+    assert done, "uint8 (H, W, 4) is what PNG holds"
     return bytes(data.tobytes())

@@ -10,6 +10,8 @@ from pydantic import BaseModel
 
 from visint.arrays import Array
 from visint.fields.evidence import Evidence
+from visint.results.pictures import reference
+from visint.results.report.drawings import drawing
 from visint.results.report.maps import is_map
 from visint.results.report.markup import Markup, Part, element, joined, table
 from visint.results.report.numbers import number
@@ -20,10 +22,13 @@ __all__ = ["evidence", "inputs", "outputs"]
 
 def inputs(setting: Setting) -> Markup | None:
     """What the run was given: images as pictures, everything else in a table."""
-    pictures, others = [], []
+    shown_first = reference(setting.result)
+    pictures: list[Markup] = []
+    others: list[tuple[Part, ...]] = []
     for name, value, kind in _inputs(setting):
         if is_map(value):
-            pictures.append(setting.figure(name, kind, value))
+            first = shown_first is not None and value is shown_first[1] and not pictures
+            pictures.append((setting.view if first else setting.figure)(name, kind, value))
         else:
             others.append((name, kind, _told(value)))
     if not pictures and not others:
@@ -47,7 +52,8 @@ def _inputs(setting: Setting) -> Iterator[tuple[str, Any, str]]:
 def outputs(setting: Setting) -> Markup:
     """What the run gave: maps as pictures, their confidence beside them, everything else in a table."""
     maps, kinds = setting.maps(), setting.result.kinds
-    figures = [setting.figure(name, kinds[name], value) for name, value in maps.items()]
+    figures = [setting.over_view(name, kinds[name], value) for name, value in maps.items()]
+    figures += [drawing(name, data) for name, data in setting.drawings.items()]
     figures += [
         setting.figure(f"confidence of {_listed(names)}", "Confidence", value)
         for names, value in _confidences(setting.result.confidence)

@@ -10,7 +10,7 @@ from visint.results.report.embed import embedded
 from visint.results.report.markup import Markup, Part, element, joined
 from visint.results.report.numbers import number, with_unit
 
-__all__ = ["color_bar", "gradients", "grey_bar", "key", "normals_key"]
+__all__ = ["change_bar", "color_bar", "gradients", "grey_bar", "key", "normals_key"]
 
 _STOPS = 17
 
@@ -19,8 +19,9 @@ def gradients() -> Markup:
     """What bars are filled with, once a page."""
     levels = np.linspace(0, 255, _STOPS).astype(np.uint8)[None]
     colors = ["#{:02x}{:02x}{:02x}".format(*rgb) for rgb in pictures.turbo(levels)[0]]
-    both = _gradient("turbo", colors), _gradient("grey", ["#000", "#fff"])
-    return element("svg", *both, width=0, height=0, class_="hidden", aria_hidden="true")
+    fills = {"turbo": colors, "grey": ["#000", "#fff"], "change": ["#2166ac", "#fff", "#b2182b"]}
+    drawn = [_gradient(name, stops) for name, stops in fills.items()]
+    return element("svg", *drawn, width=0, height=0, class_="hidden", aria_hidden="true")
 
 
 def _gradient(name: str, colors: list[str]) -> Markup:
@@ -39,6 +40,12 @@ def color_bar(low: float, high: float, unit: str) -> Markup:
 def grey_bar() -> Markup:
     """Grey from 0, black, to 1, white."""
     return _bar("grey", ("0", "0.5", "1"), "Grey bar: black is {}, white is {}")
+
+
+def change_bar(most: float, unit: str) -> Markup:
+    """From −``most``, blue, over 0, white, to ``most``, red."""
+    ends = with_unit(number(-most), unit), with_unit(number(most), unit)
+    return _bar("change", (ends[0], "0", ends[1]), "Colour bar: blue is {}, red is {}")
 
 
 def _bar(fill: str, ticks: tuple[str, str, str], says: str) -> Markup:

@@ -16,7 +16,10 @@ from visint.results.report.legends import color_bar, grey_bar, key, normals_key
 from visint.results.report.markup import Markup, element
 from visint.results.report.numbers import count, number, percent, with_unit
 
-__all__ = ["Map", "figure", "is_map"]
+__all__ = ["Map", "figure", "is_map", "over"]
+
+_LINE = (255, 106, 26)
+"""The colour of boundaries over a photograph: seldom one of its own, and told from both black and white."""
 
 
 class Map(NamedTuple):
@@ -41,12 +44,28 @@ def is_map(value: Any) -> bool:
     )
 
 
-def figure(shown: Map, side: int) -> Markup:
-    """The figure of a map, its picture at most ``side`` pixels long."""
-    view = _VIEWS.get(shown.kind, _by_type(shown.value))(shown)
+def figure(shown: Map, side: int, name: str | None = None) -> Markup:
+    """The figure of a map, its picture at most ``side`` pixels long and called ``name``."""
+    return _figure(shown, _view(shown), side, name)
+
+
+def over(shown: Map, side: int) -> Markup:
+    """The same to lie over the reference view: the script adds the view beneath, and a slider between them.
+
+    Lines are drawn on nothing and the view fades; of any other map the slider shows one part.
+    """
+    view = _OVER.get(shown.kind, _view)(shown)
+    return _figure(shown, view, side, data_over="fade" if shown.kind in _OVER else "swipe")
+
+
+def _view(shown: Map) -> _View:
+    return _VIEWS.get(shown.kind, _by_type(shown.value))(shown)
+
+
+def _figure(shown: Map, view: _View, side: int, name: str | None = None, **attributes: str) -> Markup:
     alt = f"{shown.kind} {shown.title}: {view.facts}"
     caption = element("figcaption", element("strong", shown.title), " ", element("span", view.facts))
-    return element("figure", embedded(view.picture, alt, side), view.legend, caption)
+    return element("figure", embedded(view.picture, alt, side, name), view.legend, caption, **attributes)
 
 
 def _by_type(value: Array) -> Callable[[Map], _View]:
@@ -124,6 +143,17 @@ _NAMED = {
 }
 
 
+def _lines(shown: Map) -> _View:
+    view = _boundaries(shown)
+    lines = view.picture & np.array(_LINE, np.uint8)
+    return view._replace(picture=pictures.on_nothing(lines), legend=key({"line": "boundary"}))
+
+
+def _lines_of_kinds(shown: Map) -> _View:
+    view = _boundary_kinds(shown)
+    return view._replace(picture=pictures.on_nothing(view.picture))
+
+
 def _regions(shown: Map) -> _View:
     labels = np.unique(shown.value)
     facts = f"{count(int(np.count_nonzero(labels)), 'region')}, {percent(_share(shown.value != 0))} labelled"
@@ -152,4 +182,6 @@ _VIEWS: dict[str, Callable[[Map], _View]] = {
     "Mask": _mask,
     "Regions": _regions,
     "Confidence": _confidence,
+    "Incidence": _confidence,
 }
+_OVER: dict[str, Callable[[Map], _View]] = {"Boundaries": _lines, "BoundaryKinds": _lines_of_kinds}

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
+from visint.graph.drawing import to_svg
+from visint.graph.spec import GraphSpec
 from visint.results.provenance import libraries, modules, parameters
 from visint.results.report.markup import Markup, element, joined, scrolling, table
 from visint.results.report.setting import Setting
@@ -13,12 +15,19 @@ __all__ = ["graph", "versions"]
 
 
 def graph(setting: Setting) -> Markup:
-    """The graph as the text of a graph file; a hub also as the plain nodes it stands for."""
+    """The graph drawn, and as the text of a graph file; a hub also as the plain nodes it stands for."""
     bound = setting.result.graph
-    parts = [_text("The graph file", bound.to_yaml())]
+    parts = [_drawn(bound.spec), _text("The graph file", bound.to_yaml())]
     if bound.spec.hub is not None:
         parts.append(_text("The plain graph that the hub stands for", bound.expanded()))
     return joined(parts)
+
+
+def _drawn(spec: GraphSpec) -> Markup:
+    drawn = Markup(to_svg(spec))  # escaped already, and tested there against hostile names
+    says = "Data flows downwards. Framed: loops. Dashed: the value of the turn before."
+    figure = element("figure", drawn, element("figcaption", says))
+    return element("div", figure, class_="drawn", tabindex="0", role="region", aria_label="The graph, drawn")
 
 
 def _text(title: str, text: str) -> Markup:

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from collections.abc import Callable
+from hashlib import sha256
 from string import Template
 from typing import TYPE_CHECKING, NamedTuple
 
 from visint import io
 from visint.results.provenance import installed_version
-from visint.results.report import course, fields, origin, premises
+from visint.results.report import comparison, course, fields, origin, premises, surface
+from visint.results.report.drawings import drawings
 from visint.results.report.legends import gradients
 from visint.results.report.markup import Markup, element, joined
 from visint.results.report.numbers import count, seconds
 from visint.results.report.setting import Setting
 
 if TYPE_CHECKING:
+    from visint.results.against import Against
     from visint.results.result import Result
 
 __all__ = ["MOST_BYTES", "SECTIONS", "report"]
@@ -36,7 +40,9 @@ class Section(NamedTuple):
 
 SECTIONS = (
     Section("warnings", "Warnings", course.warnings),
+    Section("comparison", "Compared with another run", comparison.comparison),
     Section("inputs", "Inputs", fields.inputs),
+    Section("surface", "Surface", surface.surface),
     Section("outputs", "Outputs", fields.outputs),
     Section("evidence", "Evidence", fields.evidence),
     Section("assumptions", "Assumptions", premises.assumptions),
@@ -49,18 +55,21 @@ SECTIONS = (
 """The sections in the order of the page."""
 
 
-def report(result: Result) -> str:
-    """The whole report of ``result`` as the text of an HTML file.
+def report(result: Result, against: Against | None = None) -> str:
+    """The whole report of ``result`` as the text of an HTML file, compared with another run if one is given.
 
-    Nothing in it asks the network for anything, and no script runs. Apart from the timings the same run
-    gives the same text. Pictures of more than 1280 pixels a side are reduced, and further until the whole
-    is at most :data:`MOST_BYTES` long; the files beside the report have every pixel.
+    Nothing in it asks the network for anything. One script runs, the page's own: its policy names it by its
+    SHA-256 and forbids every other, and without it the page shows all but the sliders and the surface. Apart
+    from the timings the same run gives the same text. Pictures of more than 1280 pixels a side are reduced,
+    and further until the whole is at most :data:`MOST_BYTES` long; the files beside the report have every
+    pixel.
     """
     side = _SIDE
-    text = _page(Setting(result, side))
+    setting = Setting(result, side, against, drawings(result))
+    text = _page(setting)
     while (size := len(text.encode())) > MOST_BYTES and side > _SMALLEST:
         side = max(_SMALLEST, int(0.95 * side * (MOST_BYTES / size) ** 0.5))  # bytes go with the area
-        text = _page(Setting(result, side))
+        text = _page(setting._replace(side=side))
     return text
 
 
@@ -68,6 +77,7 @@ def _page(setting: Setting) -> str:
     made = [(section, section.content(setting)) for section in SECTIONS]
     filled = [(section, content) for section, content in made if content]
     result = setting.result
+    script = io.resource_text(__package__, "report.js")
     return Template(io.resource_text(__package__, "report.html")).substitute(
         style=io.resource_text(__package__, "report.css"),
         title=joined([result.graph.name]),
@@ -78,6 +88,8 @@ def _page(setting: Setting) -> str:
             element("li", element("a", section.title, href=f"#{section.name}")) for section, _ in filled
         ),
         sections=joined(_section(section, content) for section, content in filled),
+        script=script,
+        digest=b64encode(sha256(script.encode()).digest()).decode(),
         version=joined([installed_version("visint")]),
     )
 

@@ -2,22 +2,42 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from visint.results.report.maps import Map, figure, is_map
+from visint.results import pictures
+from visint.results.report.maps import Map, figure, is_map, over
 from visint.results.report.markup import Markup
 
 if TYPE_CHECKING:
+    from visint.results.against import Against
     from visint.results.result import Result
 
-__all__ = ["Setting"]
+__all__ = ["REFERENCE", "Setting"]
+
+REFERENCE = "reference-view"
+"""The id of the picture of the reference view: the script lays it beneath maps and over the surface."""
 
 
 class Setting(NamedTuple):
-    """The result to report on, and the longest side of its pictures in pixels."""
+    """What to report on.
+
+    Attributes
+    ----------
+    result
+        The run.
+    side
+        The longest side of its pictures in pixels.
+    against
+        Another run to compare it with.
+    drawings
+        File name → the bytes of an SVG that a writer made of an output.
+    """
 
     result: Result
     side: int
+    against: Against | None = None
+    drawings: Mapping[str, bytes] = {}
 
     def unit(self, kind: str) -> str:
         """The unit of a field kind; that of the baseline by its name."""
@@ -32,6 +52,17 @@ class Setting(NamedTuple):
         """A map as a figure; its unit is that of its kind if not given."""
         shown = Map(title, kind, value, self.unit(kind) if unit is None else unit)
         return figure(shown, self.side)
+
+    def over_view(self, title: str, kind: str, value: Any) -> Markup:
+        """A map as a figure that can be laid over the reference view, if it is as large as that."""
+        found = pictures.reference(self.result)
+        if found is None or found[1].shape[:2] != value.shape[:2]:
+            return self.figure(title, kind, value)
+        return over(Map(title, kind, value, self.unit(kind)), self.side)
+
+    def view(self, title: str, kind: str, value: Any) -> Markup:
+        """The figure of the reference view itself."""
+        return figure(Map(title, kind, value), self.side, REFERENCE)
 
     def small(self) -> Setting:
         """The same for pictures in a row of several."""
