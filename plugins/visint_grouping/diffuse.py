@@ -61,7 +61,7 @@ class Diffuse(Module[DiffuseParams, DiffuseInputs, DiffuseOutputs]):
 
     def run(self, inputs: DiffuseInputs, ctx: Context) -> DiffuseOutputs:
         """Diffused depth; unknown where a region knows nothing within reach."""
-        from visint_grouping.walls import _kernels
+        from visint_grouping.lines import _kernels
 
         walls = inputs.boundaries if inputs.boundaries is not None else np.zeros(inputs.depth.shape, dtype=bool)
         before, after = inputs.depth.copy(), np.empty_like(inputs.depth)

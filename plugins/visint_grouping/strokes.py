@@ -41,7 +41,7 @@ class Sites(NamedTuple):
 
 def thinned(lines: Array) -> Array:
     """Bool (H, W): ``lines`` one pixel wide, with the same ends and the same regions between them."""
-    from visint_grouping.walls import _kernels
+    from visint_grouping.lines import _kernels
 
     thin = lines.copy()
     _kernels.thin(thin)
@@ -50,7 +50,7 @@ def thinned(lines: Array) -> Array:
 
 def stroked(lines: Array) -> Strokes:
     """The arcs of thin ``lines`` (bool (H, W))."""
-    from visint_grouping.walls import _kernels
+    from visint_grouping.lines import _kernels
 
     total = int(lines.sum())
     arc = np.zeros(lines.shape, np.int32)
@@ -63,7 +63,7 @@ def sites(lines: Array, strokes: Strokes) -> Sites:
     """Where a link may begin or end: terminations of arcs (pixels with one neighbour), and corners."""
     import cv2
 
-    from visint_grouping.walls import _kernels
+    from visint_grouping.lines import _kernels
 
     around = cv2.filter2D(lines.astype(np.uint8), -1, np.ones((3, 3), np.uint8), borderType=cv2.BORDER_CONSTANT)
     first, last = strokes.starts[:-1], strokes.starts[1:] - 1

@@ -100,7 +100,7 @@ class Voronoi(Module[VoronoiParams, GroupingInputs, GroupingOutputs]):
 
     def _extended(self, scene: Scene, lines: Array, reach: int, scale: int) -> tuple[Array, Sites]:
         """Lines with their extensions, and the sites of the whole."""
-        from visint_grouping.walls import _kernels
+        from visint_grouping.lines import _kernels
 
         strokes = stroked(lines)
         ends = sites(lines, strokes)
