@@ -52,12 +52,13 @@ def test_spokes_controls_and_repetition(hub, visint, tmp_path, files):
         assert (tmp_path / "again/depth.pfm").read_bytes() == (tmp_path / name / "depth.pfm").read_bytes()
 
 
+PARTS = ("depth", "sigma", "reliability", "share_of_depth")
+
+
 def test_evidence_of_every_spoke_is_kept(hub, tmp_path, files):
     hub("out", files=files)
     with np.load(tmp_path / "out/evidence.npz") as stored:
-        parts = {
-            f"{spoke}.{part}" for spoke in ("first", "second") for part in ("depth", "sigma", "reliability")
-        }
+        parts = {f"{spoke}.{part}" for spoke in ("first", "second") for part in PARTS}
         assert set(stored) == parts
         assert all(stored[part].shape == (16, 24) for part in parts)
     record = json.loads((tmp_path / "out/run.json").read_text())

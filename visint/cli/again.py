@@ -16,7 +16,10 @@ __all__ = ["Former", "former"]
 
 
 class Former(NamedTuple):
-    """A former run: its graph, seed, last node, the fields it started from, and what its inputs were."""
+    """A former run: its graph, seed, last node, the fields it started from, and what its inputs were.
+
+    ``attribution`` says whether it followed which cue decided what.
+    """
 
     path: Path
     graph: Graph
@@ -24,6 +27,7 @@ class Former(NamedTuple):
     stop_after: str
     start: Mapping[str, str]
     inputs: Mapping[str, Mapping[str, Any]]
+    attribution: bool = True
 
     def sources(self, given: Mapping[str, Source]) -> dict[str, Source]:
         """Where its inputs were read from; what is ``given`` now goes first.
@@ -88,7 +92,8 @@ def former(path: Path) -> Former:
     graph = bind(source.spec, installed(), source.places)
     inputs = {name: told for name, told in record["inputs"].items() if told.get("sha256") != ABSENT}
     stop_after, start = record.get("stop_after") or "", record.get("start") or {}
-    return Former(path, graph, record["seed"], stop_after, start, inputs)
+    followed = bool(record.get("attribution"))
+    return Former(path, graph, record["seed"], stop_after, start, inputs, followed)
 
 
 def _is_record(record: Any) -> bool:

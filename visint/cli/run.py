@@ -89,6 +89,7 @@ def command(  # noqa: PLR0913, PLR0917 - the options of a command line are many,
         stop_after=stop_after or (before.stop_after if before else "") or None,
         start=_start(bound, start, before),
         observers=(profile,) if trace else (),
+        attribution=before is None or before.attribution,
     )
     said: list[tuple[str, str]] = []
     result = _run(bound, sources, options, said, quiet=quiet)

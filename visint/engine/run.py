@@ -10,13 +10,14 @@ from os import PathLike
 from time import perf_counter
 from typing import Any
 
+from visint.engine.attribution import Attribution, Weights
 from visint.engine.inputs import accept, camera_of, size_of
 from visint.engine.one_thread import ONE_THREAD
 from visint.engine.options import Options
 from visint.engine.ready import execute, pools_for
 from visint.engine.state import Halt, State, emitter
 from visint.engine.warm import accept_start
-from visint.events import RunFinished, RunStarted
+from visint.events import Observer, RunFinished, RunStarted
 from visint.fields.evidence import Evidence
 from visint.graph import Graph, load
 from visint.results import Result, gather
@@ -68,8 +69,8 @@ def run(
     state = State([None] * schedule.slots, (options.seed,), camera_of(values), cancel=cancel)
     size = size_of(graph, values)
     state.warm = accept_start(graph, options.start, size)
-    observers = [*options.observers, *(seen for plugin in graph.catalog.loaded for seen in plugin.observers())]
-    state.emit = emitter(observers, threaded=threaded)
+    attribution = Attribution(graph) if options.attribution else None
+    state.emit = emitter(_observers(graph, options, attribution), threaded=threaded)
     started = perf_counter()
     names = _names(schedule)
     state.tell(RunStarted(graph.name, names, _calls(schedule, size)))
@@ -87,7 +88,14 @@ def run(
     if options.threads > 1 or graph.loops:  # else the order of time is the order of the nodes
         state.record.in_order(graph.loops, names)
     state.record.stop_after, state.record.start = options.stop_after, options.start
-    return _result(schedule, state, values, perf_counter() - started)
+    weights = attribution.weights if attribution else {}
+    return _result(schedule, state, values, perf_counter() - started, weights)
+
+
+def _observers(graph: Graph, options: Options, attribution: Attribution | None) -> list[Observer]:
+    """Who listens: the run's own, those that were asked for, and those of plugins."""
+    plugins = (seen for plugin in graph.catalog.loaded for seen in plugin.observers())
+    return [*([attribution] if attribution else []), *options.observers, *plugins]
 
 
 @lru_cache(maxsize=32)
@@ -116,7 +124,9 @@ def _calls(schedule: Schedule, size: tuple[int, int] | None) -> int:
     return count(schedule.root)
 
 
-def _result(schedule: Schedule, state: State, values: Mapping[str, Any], seconds: float) -> Result:
+def _result(
+    schedule: Schedule, state: State, values: Mapping[str, Any], seconds: float, attribution: Weights
+) -> Result:
     outputs = {
         name: state.slots[slot] for name, slot in schedule.outputs.items() if state.slots[slot] is not None
     }
@@ -135,6 +145,7 @@ def _result(schedule: Schedule, state: State, values: Mapping[str, Any], seconds
         outputs,
         maps=maps,
         evidence=evidence,
+        attribution=attribution,
         record=state.record,
         seed=state.seed[0],
         seconds=seconds,

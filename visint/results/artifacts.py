@@ -60,8 +60,8 @@ def files_of(result: Result) -> Files:
     for name, value in result.confidence.items():
         if f"{name}_confidence" not in result.outputs:  # the graph may give it as an output of its own
             yield f"{name}_confidence.pfm", io.encode_pfm(value)
-    if result.evidence:
-        yield "evidence.npz", io.encode_npz(dict(_evidence(result.evidence)))
+    if result.evidence or result.attribution:
+        yield "evidence.npz", io.encode_npz({**dict(_evidence(result.evidence)), **dict(_shares(result))})
     yield from _points(result)
 
 
@@ -110,6 +110,12 @@ def _evidence(evidence: Mapping[str, Evidence]) -> Iterator[tuple[str, Array]]:
         yield f"{name}.{one.measures.lower()}", one.value
         yield f"{name}.sigma", one.sigma
         yield f"{name}.reliability", one.reliability
+
+
+def _shares(result: Result) -> Iterator[tuple[str, Array]]:
+    """How much of each field each cue decided."""
+    for name, weights in result.attribution.items():
+        yield from ((f"{cue}.share_of_{name}", weight) for cue, weight in weights.items())
 
 
 def _points(result: Result) -> Files:

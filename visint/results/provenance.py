@@ -63,6 +63,11 @@ def provenance(result: Result, sources: Mapping[str, Source]) -> dict[str, Any]:
         "stops": [stop._asdict() for stop in result.stops],
         "trace": [turn._asdict() for turn in result.trace],
         "warnings": [warned._asdict() for warned in result.warnings],
+        "attribution": {
+            name: {cue: _mean(weight) for cue, weight in weights.items()}
+            for name, weights in result.attribution.items()
+        },
+        "evidence_units": dict(_units(result)),
         "assumptions": {
             node: {name: premise.plain() for name, premise in some.items()}
             for node, some in result.assumptions.items()
@@ -70,6 +75,25 @@ def provenance(result: Result, sources: Mapping[str, Source]) -> dict[str, Any]:
         "measures": [measure._asdict() for measure in result.record.measures],
     }
     return {key: _spelled(one) for key, one in told.items()}
+
+
+def _mean(weight: Array) -> float:
+    """The mean of a map of weights, rounded to what is worth telling."""
+    return round(float(weight.mean(dtype=np.float64)), 6)
+
+
+def _units(result: Result) -> Iterator[tuple[str, str]]:
+    """The unit of each array of ``evidence.npz``; that of the baseline by its name."""
+    camera = result.camera
+    for name, one in result.evidence.items():
+        kind = result.graph.catalog.kind(one.measures)
+        unit = kind.array.unit if kind and kind.array else "1"
+        unit = unit.replace("baseline", camera.unit if camera else "relative")
+        yield f"{name}.{one.measures.lower()}", unit
+        yield f"{name}.sigma", "rad" if one.measures == "Normals" else unit
+        yield f"{name}.reliability", "1"
+    for name, weights in result.attribution.items():
+        yield from ((f"{cue}.share_of_{name}", "1") for cue in weights)
 
 
 def _input(value: Any, source: Source | None) -> dict[str, Any]:

@@ -45,6 +45,9 @@ class Result(Mapping[str, Any]):
         float32 (H, W) in [0, 1] by output, where it is known.
     evidence
         What each spoke said last, by spoke.
+    attribution
+        Field of the map → cue → float32 (H, W) in [0, 1]: how much of the field the cue decided. Over the cues
+        they sum to at most 1; the rest is the start's. Empty unless the run was asked to follow it.
     writers
         Who wrote the field of the map that an output was read from last.
     record
@@ -59,6 +62,7 @@ class Result(Mapping[str, Any]):
     kinds: Mapping[str, str]
     confidence: Mapping[str, Array] = field(default_factory=dict)
     evidence: Mapping[str, Evidence] = field(default_factory=dict)
+    attribution: Mapping[str, Mapping[str, Array]] = field(default_factory=dict)
     writers: Mapping[str, Writer] = field(default_factory=dict)
     record: Record = field(default_factory=Record)
     seed: int = 0
@@ -152,6 +156,7 @@ def gather(  # noqa: PLR0913 - all that a run leaves, put together in this one p
     maps: Mapping[str, MapSnapshot | None],
     evidence: Mapping[str, Evidence],
     record: Record,
+    attribution: Mapping[str, Mapping[str, Array]] | None = None,
     seed: int = 0,
     seconds: float = 0.0,
 ) -> Result:
@@ -178,7 +183,10 @@ def gather(  # noqa: PLR0913 - all that a run leaves, put together in this one p
     kinds = {name: kind for name, (kind, _) in typed.items()}
     if "Depth" in kinds.values() and (maps if camera is None else not camera.calibrated):
         record.warnings.append(_RELATIVE)
-    return Result(graph, dict(inputs), values, kinds, confidence, evidence, writers, record, seed, seconds)
+    weights = attribution or {}
+    return Result(
+        graph, dict(inputs), values, kinds, confidence, evidence, weights, writers, record, seed, seconds
+    )
 
 
 def _field_of(graph: Graph, output: str) -> str:

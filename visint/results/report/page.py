@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from visint import io
 from visint.results.provenance import installed_version
-from visint.results.report import comparison, course, fields, origin, premises, surface
+from visint.results.report import attribution, comparison, course, fields, origin, premises, surface
 from visint.results.report.drawings import drawings
 from visint.results.report.legends import gradients
 from visint.results.report.markup import Markup, element, joined
@@ -45,6 +45,7 @@ SECTIONS = (
     Section("surface", "Surface", surface.surface),
     Section("outputs", "Outputs", fields.outputs),
     Section("evidence", "Evidence", fields.evidence),
+    Section("attribution", "Who decided", attribution.attribution),
     Section("assumptions", "Assumptions", premises.assumptions),
     Section("convergence", "Convergence", course.convergence),
     Section("timings", "Timings", course.timings),
