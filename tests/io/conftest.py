@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import io
 import os
 import struct
@@ -207,6 +208,15 @@ def real_data():
     if not folder.is_dir():
         pytest.skip("no real data: set VISINT_DATA")
     return folder
+
+
+@pytest.fixture(scope="session")
+def rigs():
+    """The module beside this one: a rig of known numbers."""
+    spec = importlib.util.spec_from_file_location("rigs", Path(__file__).with_name("rigs.py"))
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 @pytest.fixture

@@ -124,11 +124,17 @@ def test_a_name_that_stands_twice_is_refused(put):
         visint.io.read_camera(put(sheet() + "baseline=3\n"))
 
 
-@pytest.mark.parametrize("text", ["hello\nworld\n", "%YAML:1.0\n---\n", "P0: 1 2 3\n", "{}\n"])
+@pytest.mark.parametrize("text", ["hello\nworld\n", "{}\n", "a = [1\nb\n"])
 def test_another_sort_of_file_is_refused_in_one_line(put, text):
     """Text that is no calibration: the first line that cannot be one."""
     with pytest.raises(InputError, match="wants name=value"):
         visint.io.read_camera(put(text))
+
+
+def test_xml_is_refused_by_name(put):
+    """OpenCV's other format: how to write the one that is read."""
+    with pytest.raises(InputError, match=r"is XML[\s\S]*\.yml"):
+        visint.io.read_camera(put("<?xml version='1.0'?><opencv_storage></opencv_storage>"))
 
 
 @pytest.mark.parametrize(

@@ -8,12 +8,12 @@ from typing import Any
 
 from visint import io
 from visint.engine.inputs import misfits
+from visint.engine.rectified import calibrated
 from visint.errors import InputError, Problem, UsageError
 from visint.fields.camera import Camera
 from visint.fields.light import Light
 from visint.graph.graph import Graph
-from visint.graph.spec import InputSpec
-from visint.io.files import silent
+from visint.io.files import Note, silent
 from visint.names import did_you_mean, listed
 from visint.results.provenance import Source
 
@@ -46,7 +46,7 @@ def read_sources(graph: Graph, sources: Mapping[str, Source], say: Say | None = 
         if name not in graph.inputs:
             continue
         try:
-            values[name] = _read(name, graph.inputs[name], sources[name], values, say)
+            values[name] = _read(graph, name, sources[name], values, say)
         except InputError as error:
             problems += error.problems
     problems += misfits(graph, values)
@@ -77,14 +77,14 @@ def _missing(graph: Graph, sources: Mapping[str, Source]) -> Iterator[Problem]:
             yield Problem("VI304", f"the input {name!r} ({spec}) is missing", write=write, fault="input")
 
 
-def _read(name: str, spec: InputSpec, source: Source, values: Mapping[str, Any], say: Say | None) -> Any:
+def _read(graph: Graph, name: str, source: Source, values: dict[str, Any], say: Say | None) -> Any:
+    spec, note = graph.inputs[name], partial(say, name) if say else silent
     if spec.kind == "Camera":
-        return _camera(name, source, values)
+        return _camera(graph, name, source, (values, note))
     if spec.kind == "Light":
         return _light(source.text)
     if spec.kind in ("Scalar", "Flag", "Text"):
         return _scalar(name, spec.kind, source.text)
-    note = partial(say, name) if say else silent
     read = [io.read(path, spec.kind, gamma=source.gamma, note=note) for path in source.paths]
     return tuple(read) if spec.many else _one(name, spec.kind, read)
 
@@ -131,12 +131,13 @@ def numbers(text: str, count: int, wanted: str) -> tuple[float, ...]:
     return found
 
 
-def _camera(name: str, source: Source, values: Mapping[str, Any]) -> Camera | None:
+def _camera(graph: Graph, name: str, source: Source, beside: tuple[dict[str, Any], Note]) -> Camera | None:
+    values, note = beside
     span = numbers(source.text, 2, "a search range is a,b in pixels") if source.text else None
     if span is not None and span[0] >= span[1]:
         raise UsageError.of("VI701", f"a search range a,b wants a < b; this is {source.text}")
     if source.paths:
-        camera = io.read_camera(_one(name, "Camera", source.paths))
+        camera = calibrated(graph, _one(name, "Camera", source.paths), values, note)
         return camera if span is None else camera.model_copy(update={"disparity_range": span})
     sizes = [value.shape[:2] for value in values.values() if hasattr(value, "shape")]
     if not sizes:  # what is wrong with the images is said beside this

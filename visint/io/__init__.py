@@ -11,6 +11,8 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from visint.io.calibration import Calibration as Calibration
+    from visint.io.calibration import read_calibration as read_calibration
     from visint.io.calibration import read_camera as read_camera
     from visint.io.curves import linear_from_srgb as linear_from_srgb
     from visint.io.curves import luminance as luminance
@@ -45,6 +47,7 @@ if TYPE_CHECKING:
     from visint.io.write import write_text as write_text
 
 _HOME = {
+    "Calibration": "calibration",
     "LIMITS": "limits",
     "Limits": "limits",
     "OutputFolder": "folder",
@@ -64,6 +67,7 @@ _HOME = {
     "make_folder": "write",
     "read": "inputs",
     "read_bytes": "files",
+    "read_calibration": "calibration",
     "read_camera": "calibration",
     "read_color": "inputs",
     "read_image": "inputs",
