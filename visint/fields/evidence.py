@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import reduce
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -40,8 +41,11 @@ def known(value: Array) -> Array:
     """
     if not np.issubdtype(value.dtype, np.floating):
         return np.ones(value.shape[:2], dtype=bool)
-    finite = np.isfinite(value)
-    return finite if value.ndim == 2 else np.logical_and.reduce(finite, axis=tuple(range(2, value.ndim)))
+    if value.ndim == 2:
+        return np.isfinite(value)
+    channels = value.reshape(*value.shape[:2], -1)  # one at a time: numpy is slow over a short last axis
+    finite = (np.isfinite(channels[..., c]) for c in range(channels.shape[2]))
+    return reduce(np.logical_and, finite, np.ones(value.shape[:2], dtype=bool))
 
 
 class Evidence(BaseModel):

@@ -1,4 +1,5 @@
 # mypy: ignore-errors
+# ruff: noqa: PLR0917 - kernels take what they need
 """The kernel of coherence: variances and medians of small sets of neighbours, a row at a time."""
 
 from __future__ import annotations
@@ -32,126 +33,162 @@ def _sort(members, network):
 
 
 @njit(cache=True, nogil=True)
-def _medians(members, count, network, middle):
-    """The median of the first ``count`` of the sorted members, all else being +inf; members are sorted."""
-    _sort(members, network)
-    for x in range(middle.size):
-        n = count[x]
-        if n > 0:
-            middle[x] = np.float32(0.5) * (members[(n - 1) // 2, x] + members[n // 2, x])
-
-
-@njit(cache=True, nogil=True)
-def cohere(predicted, own, trust, prior, reached, neighbours, limit, value, worth, spread, both, verdict):
+def cohere(predicted, own, told, prior, reached, neighbours, limit, value, kept, spread, both, verdict):
     """Eqs. 5.31 and 5.52, corrected, with variances.
 
-    Parameters: ``predicted`` float32 (H, W, C), what each pixel predicts for its neighbours, NaN nothing, and
-    ``trust`` float32 (H, W) what that is worth; ``own`` what stands where nobody can judge; ``prior`` the map's
-    value, NaN unknown; ``reached`` the links, of which the first ``neighbours`` count; ``limit`` is rho. Sets
-    ``value`` (H, W, C), ``worth`` (H, W) the mean trust of the neighbours (an absent one has none),
-    ``spread`` var(F), ``both`` var(F with the map's), NaN where there is none, and ``verdict`` uint8.
+    Parameters: ``predicted`` float32 (C, H, W), what each pixel predicts for its neighbours, NaN nothing, and
+    ``told`` (2, H, W) the reliability and sigma of that; ``own`` (H, W, C) what stands where nobody can judge;
+    ``prior`` (C, H, W) the map's value, NaN unknown; ``reached`` the links, of which the first ``neighbours``
+    count; ``limit`` is rho. Sets ``value`` (H, W, C), ``kept`` (2, H, W) the neighbours' mean reliability (an
+    absent one has none) and sigma, ``spread`` var(F), ``both`` var(F with the map's), NaN where there is none,
+    and ``verdict`` uint8.
     """
-    rows, columns, channels = predicted.shape
+    channels, rows, columns = predicted.shape
     size = neighbours + 1
     network = SHORT if size <= 5 else NETWORK
-    members = np.empty((channels, size, columns), np.float32)
-    sorted_ = np.empty((9, columns), np.float32)
-    kept = np.empty((channels, columns), np.float32)
-    count = np.empty(columns, np.int64)
-    union = np.empty(columns, np.int64)
-    first, second = np.empty(columns, np.float32), np.empty(columns, np.float32)
+    members = np.empty((channels, size, columns), np.float32)  # 0 where absent
+    there = np.zeros((size, columns), np.float32)  # 1 where a member is; the map's value is the last
+    ordered = np.empty((size, columns), np.float32)
+    middle = np.empty((channels, columns), np.float32)
+    count = np.empty(columns, np.float32)
+    alone, united = np.empty(columns, np.float32), np.empty(columns, np.float32)
+    mean, squares = np.empty(columns, np.float32), np.empty(columns, np.float32)
+    best, nearest = np.empty(columns, np.int32), np.empty(columns, np.float32)
     nothing = np.float32(np.nan)
     far = np.float32(np.inf)
     for y in range(rows):
-        _gather(predicted, trust, reached, neighbours, y, members, count, worth)
-        _variance(members, count, prior[y], first, second)
+        _gather(predicted, told, reached, neighbours, y, members, there, count, kept)
+        alone[:] = 0
+        united[:] = 0
+        for c in range(channels):
+            _variance(members[c], there, count, prior[c, y], mean, squares, alone, united)
         for x in range(columns):
-            known = not np.isnan(prior[y, x, 0])
             n = count[x]
-            spread[y, x] = first[x] if n > 1 else nothing
-            both[y, x] = second[x] if n > 1 and known else nothing
-            union[x] = n
+            first, second = alone[x] / np.float32(channels), united[x] / np.float32(channels)
+            known = not np.isnan(prior[0, y, x])
+            spread[y, x] = first if n > 1 else nothing
+            both[y, x] = second if n > 1 and known else nothing
+            there[neighbours, x] = 0
             if n < 2:
                 verdict[y, x] = ALONE
-                worth[y, x] = trust[y, x]
-            elif first[x] > limit:
+                kept[0, y, x] = told[0, y, x]
+                kept[1, y, x] = told[1, y, x]
+            elif first > limit:
                 verdict[y, x] = REJECTED
-            elif known and second[x] <= limit:
+            elif known and second <= limit:
                 verdict[y, x] = AGREED
-                for c in range(channels):
-                    members[c, n, x] = prior[y, x, c]
-                union[x] = n + 1
+                there[neighbours, x] = 1
+                count[x] = n + 1
             else:
                 verdict[y, x] = REPLACED
         for c in range(channels):
+            members[c, neighbours] = prior[c, y]
             for k in range(size):
                 for x in range(columns):
-                    sorted_[k, x] = members[c, k, x] if k < union[x] else far
-            _medians(sorted_[:size] if size <= 5 else sorted_, union, network, kept[c])
+                    ordered[k, x] = members[c, k, x] if there[k, x] > 0 else far
+            _sort(ordered, network)
+            for x in range(columns):
+                n = max(np.int64(count[x]), 1)
+                middle[c, x] = np.float32(0.5) * (ordered[(n - 1) // 2, x] + ordered[n // 2, x])
+        if channels > 1:
+            _nearest(members, there, middle, squares, best, nearest)
         for x in range(columns):
             judged = verdict[y, x]
-            if judged == ALONE:
-                value[y, x] = own[y, x]
-            elif judged == REJECTED:
-                value[y, x] = prior[y, x]
-            elif channels == 1:
-                value[y, x, 0] = kept[0, x]
-            else:
-                best, nearest = 0, far
-                for k in range(union[x]):
-                    distance = np.float32(0)
-                    for c in range(channels):
-                        off = members[c, k, x] - kept[c, x]
-                        distance += off * off
-                    if distance < nearest:
-                        best, nearest = k, distance
-                for c in range(channels):
-                    value[y, x, c] = members[c, best, x]
+            for c in range(channels):
+                if judged == ALONE:
+                    value[y, x, c] = own[y, x, c]
+                elif judged == REJECTED:
+                    value[y, x, c] = prior[c, y, x]
+                elif channels == 1:
+                    value[y, x, c] = middle[c, x]
+                else:
+                    value[y, x, c] = members[c, best[x], x]
 
 
 @njit(cache=True, nogil=True)
-def _gather(predicted, trust, reached, neighbours, y, members, count, worth):
-    """The predictions for the pixels of row ``y``, first come first: ``members`` (C, K, W) and ``count``."""
-    columns, channels = predicted.shape[1:]
+def _gather(predicted, told, reached, neighbours, y, members, there, count, kept):
+        seen, total = linked[low:high], count[low:high]
+        sums, widths = worth[low:high], width[low:high]
+    channels, _, columns = predicted.shape
+    count[:] = 0
+    worth, width = kept[0, y], kept[1, y]
+    worth[:] = 0
+    width[:] = 0
+    linked = np.zeros(columns, np.float32)
+    one, nil = np.float32(1), np.float32(0)
+    for k in range(neighbours):
+        v, across = y + ROWS[k], COLUMNS[k]
+        bit = np.uint8(1 << k)
+        there[k] = 0
+        for c in range(channels):
+            members[c, k] = 0
+        if v < 0 or v >= predicted.shape[1]:
+            continue
+        low, high = max(0, -across), min(columns, columns - across)
+        if high <= low:
+            continue
+        open_, here = reached[y, low:high], there[k, low:high]  # slices: an index x + across hinders SIMD
+        values = predicted[0, v, low + across : high + across]
+        sure, spread = told[0, v, low + across : high + across], told[1, v, low + across : high + across]
+        seen, total, sums, widths = linked[low:high], count[low:high], worth[low:high], width[low:high]
+        for x in range(high - low):
+            link = one if open_[x] & bit else nil
+            seen[x] += link
+            speaks = link if values[x] == values[x] else nil
+            here[x] = speaks
+            total[x] += speaks
+            sums[x] += sure[x] if speaks > 0 else nil
+            widths[x] += spread[x] if speaks > 0 else nil
+        for c in range(channels):
+            into, values = members[c, k, low:high], predicted[c, v, low + across : high + across]
+            for x in range(high - low):
+                into[x] = values[x] if here[x] > 0 else nil
     for x in range(columns):
-        bits = reached[y, x]
-        n, linked, total = 0, 0, np.float32(0)
-        for k in range(neighbours):
-            if not bits >> k & 1:
-                continue
-            linked += 1
-            v, u = y + ROWS[k], x + COLUMNS[k]
-            if np.isnan(predicted[v, u, 0]):
-                continue
-            for c in range(channels):
-                members[c, n, x] = predicted[v, u, c]
-            total += trust[v, u]
-            n += 1
-        count[x] = n
-        worth[y, x] = total / np.float32(max(linked, 1))
+        worth[x] /= max(linked[x], one)
+        width[x] /= max(count[x], one)
 
 
 @njit(cache=True, nogil=True)
-def _variance(members, count, prior, first, second):
-    """Mean over the channels of the variance of the members, and of the members with the map's value."""
-    channels, _, columns = members.shape
+def _variance(members, there, count, prior, mean, squares, alone, united):
+    """Adds the variance of the members to ``alone``, and that of the members with the map's to ``united``."""
+    size, columns = members.shape
+    one = np.float32(1)
+    mean[:] = 0
+    squares[:] = 0
+    for k in range(size - 1):
+        for x in range(columns):
+            mean[x] += members[k, x]
     for x in range(columns):
-        n = count[x]
-        alone, united = np.float32(0), np.float32(0)
-        if n > 1:
-            for c in range(channels):
-                total = np.float32(0)
-                for k in range(n):
-                    total += members[c, k, x]
-                mean = total / np.float32(n)
-                squares = np.float32(0)
-                for k in range(n):
-                    off = members[c, k, x] - mean
-                    squares += off * off
-                alone += squares / np.float32(n)
-                off = prior[x, c] - mean
-                united += (squares + off * off * np.float32(n) / np.float32(n + 1)) / np.float32(n + 1)
-        first[x], second[x] = alone / np.float32(channels), united / np.float32(channels)
+        mean[x] /= max(count[x], one)
+    for k in range(size - 1):
+        for x in range(columns):
+            off = members[k, x] - mean[x]
+            squares[x] += there[k, x] * off * off
+    for x in range(columns):
+        n = max(count[x], one)
+        off = prior[x] - mean[x]
+        alone[x] += squares[x] / n
+        united[x] += (squares[x] + off * off * n / (n + one)) / (n + one)
+
+
+@njit(cache=True, nogil=True)
+def _nearest(members, there, middle, distance, best, nearest):
+    """Sets ``best``: the member nearest to the medians of the components."""
+    channels, size, columns = members.shape
+    far = np.float32(np.inf)
+    nearest[:] = far
+    best[:] = 0
+    for k in range(size):
+        distance[:] = 0
+        for c in range(channels):
+            for x in range(columns):
+                off = members[c, k, x] - middle[c, x]
+                distance[x] += off * off
+        for x in range(columns):
+            length = distance[x] if there[k, x] > 0 else far
+            closer = length < nearest[x]
+            best[x] = k if closer else best[x]
+            nearest[x] = length if closer else nearest[x]
 
 
 @njit(cache=True, nogil=True)

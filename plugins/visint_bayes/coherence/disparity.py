@@ -9,7 +9,6 @@ from visint.arrays import Array, Boundaries, Confidence, Depth, Disparity
 from visint.fields import Camera, DepthEvidence, DisparityEvidence
 from visint.fields.geometry import depth_evidence, disparity_evidence, disparity_from_depth
 from visint.module import Context, Module, Params, Ports
-from visint_bayes.coherence.outcome import Side, spoken
 from visint_bayes.coherence.table import Opinions, Verdict, validated
 
 __all__ = ["CohereDepth", "CohereDisparity"]
@@ -24,8 +23,8 @@ class CohereDisparityParams(Params):
     Parameters
     ----------
     rho
-        Variance of the neighbours' predictions, px² of the level, above which they do not agree. Less keeps more
-        of the map and follows the cue less. Published: at most 4.
+        Variance of the neighbours' predictions, px² of the level, above which they do not agree. Less keeps
+        more of the map and follows the cue less. Published: at most 4.
     """
 
     rho: float = Field(default=4.0, gt=0)
@@ -68,10 +67,8 @@ class CohereDisparity(Module[CohereDisparityParams, CohereDisparityInputs, Coher
         """Evidence of the images' size; it may speak where the cue itself did not, and its neighbours do."""
         ctx.check()
         verdict = _judged(inputs.evidence, inputs, self.params.rho)
-        side = Side(inputs.evidence.sigma, inputs.boundaries, NEIGHBOURS)
-        value, sigma, trust = spoken(verdict, side)
         ctx.assumed("coherence", verdict.agreement >= 0.5)
-        found = DisparityEvidence.of(value[..., 0], sigma, trust)
+        found = DisparityEvidence.of(verdict.value[..., 0], verdict.sigma, verdict.trust)
         return CohereDisparityOutputs(evidence=found, beta=verdict.beta, kappa=verdict.kappa)
 
 
@@ -80,7 +77,7 @@ def _judged(evidence: DisparityEvidence, inputs: CohereDisparityInputs, rho: flo
     predicted = own if inputs.back is None else _led_back(inputs.back, own)
     known = inputs.disparity if inputs.disparity is not None else np.full_like(own, np.nan)
     predicted, own, known = (np.ascontiguousarray(each)[..., None] for each in (predicted, own, known))
-    opinions = Opinions(predicted, evidence.reliability, own, known)
+    opinions = Opinions(predicted, own, known, evidence.reliability, evidence.sigma)
     return validated(opinions, inputs.boundaries, NEIGHBOURS, rho)
 
 

@@ -9,7 +9,6 @@ from visint.arrays import Array, Boundaries, Confidence, Depth, Normals
 from visint.fields import Camera, Evidence, NormalsEvidence, ReliefEvidence, SlopesEvidence
 from visint.fields.geometry import normals_from_slopes, slopes_from_depth
 from visint.module import Context, Module, Params, Ports
-from visint_bayes.coherence.outcome import Side, spoken
 from visint_bayes.coherence.table import Opinions, validated
 
 __all__ = ["CohereNormals"]
@@ -74,12 +73,11 @@ class CohereNormals(Module[CohereNormalsParams, CohereNormalsInputs, CohereNorma
         ctx.check()
         evidence = _oriented(inputs)
         known = inputs.normals if inputs.normals is not None else np.full_like(evidence.value, np.nan)
-        opinions = Opinions(evidence.value, evidence.reliability, evidence.value, known)
+        opinions = Opinions(evidence.value, evidence.value, known, evidence.reliability, evidence.sigma)
         verdict = validated(opinions, inputs.boundaries, NEIGHBOURS, self.params.rho)
         ctx.check()
         ctx.assumed("coherence", verdict.agreement >= 0.5)
-        value, sigma, trust = spoken(verdict, Side(evidence.sigma, inputs.boundaries, NEIGHBOURS))
-        found = NormalsEvidence.of(value, sigma, trust)
+        found = NormalsEvidence.of(verdict.value, verdict.sigma, verdict.trust)
         return CohereNormalsOutputs(evidence=found, beta=verdict.beta, kappa=verdict.kappa)
 
 

@@ -17,31 +17,42 @@ the median of all; fewer than two neighbours: nobody can judge, the cue's own va
 
 
 class Opinions(NamedTuple):
-    """What is validated: float32 (H, W, C) but for ``trust`` (H, W).
+    """What is validated: float32 (H, W, C), NaN where there is none.
 
-    ``predicted``: what each pixel predicts for its neighbours, and ``trust`` what that is worth; ``own``: what
-    the cue says of the pixel itself; ``map``: the map's value. NaN where there is none.
+    ``predicted``: what each pixel predicts for its neighbours; ``own``: what the cue says of the pixel itself;
+    ``map``: the map's value; ``reliability`` and ``sigma`` (H, W) of the cue.
     """
 
     predicted: Array
-    trust: Array
     own: Array
     map: Array
+    reliability: Array
+    sigma: Array
 
 
 class Verdict(NamedTuple):
     """The validated ``value`` (H, W, C), and float32 (H, W) each: what it rests on.
 
-    ``worth``: mean trust of the neighbours; ``beta`` and ``kappa``: confidence 1/(1 + var/ρ) that they agree
+    ``reliability`` and ``sigma``: the neighbours' on the average, one who says nothing having no reliability;
+    ``beta`` and ``kappa``: confidence 1/(1 + var/ρ) that they agree
     with each other, and with the map (½ is the table's threshold, 1 where nobody can judge); ``row``: uint8,
     which row of the table.
     """
 
     value: Array
-    worth: Array
+    reliability: Array
+    sigma: Array
     beta: Array
     kappa: Array
     row: Array
+
+    @property
+    def trust(self) -> Array:
+        """The reliability of the validated value: the neighbours' times β.
+
+        Where they disagree, and the map's own value comes back, that is below half of theirs.
+        """
+        return self.reliability * self.beta
 
     @property
     def agreement(self) -> float:
@@ -64,15 +75,18 @@ def validated(opinions: Opinions, boundaries: Array | None, neighbours: int, lim
     """
     from visint_bayes.coherence import _kernels
 
-    size = opinions.trust.shape
+    size = opinions.sigma.shape
     reached = barriers.links(boundaries, size)
-    value = np.empty_like(opinions.own)
-    worth, spread, both = (np.empty(size, dtype=np.float32) for _ in range(3))
-    row = np.empty(size, dtype=np.uint8)
+    value, row = np.empty_like(opinions.own), np.empty(size, dtype=np.uint8)
+    told, kept, spread = (np.empty((2, *size), dtype=np.float32) for _ in range(3))
+    told[0], told[1] = opinions.reliability, opinions.sigma
+    predicted, known = (
+        np.ascontiguousarray(np.moveaxis(each, 2, 0)) for each in (opinions.predicted, opinions.map)
+    )
     numbers = (reached, neighbours, np.float32(limit))
-    given = (opinions.predicted, opinions.own, opinions.trust, opinions.map)
-    _kernels.cohere(*given, *numbers, value, worth, spread, both, row)
-    return Verdict(value, worth, _confidence(spread, limit), _confidence(both, limit), row)
+    _kernels.cohere(predicted, opinions.own, told, known, *numbers, value, kept, spread[0], spread[1], row)
+    beta, kappa = (_confidence(each, limit) for each in spread)
+    return Verdict(value, kept[0], kept[1], beta, kappa, row)
 
 
 def _confidence(variance: Array, limit: float) -> Array:

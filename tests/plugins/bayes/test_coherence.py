@@ -35,19 +35,14 @@ class TestNormals(ModuleContract):
 
 
 def judged(around, known, limit=1.0, own=7.0, neighbours=4, lines=None):
-    """The verdict on the middle of 3 × 3 pixels, whose neighbours above, right, below, left predict ``around``."""
+    """The verdict on the middle of 3 × 3 pixels, whose neighbours predict ``around``, from above to the right."""
     predicted = np.full((3, 3), np.nan, np.float32)
     places = [(0, 1), (1, 2), (2, 1), (1, 0), (0, 0), (0, 2), (2, 2), (2, 0)]
     for place, value in zip(places, around, strict=False):
         predicted[place] = value
     mine = np.full((3, 3), own, np.float32)
-    opinions = (
-        predicted[..., None],
-        np.ones((3, 3), np.float32),
-        mine[..., None],
-        np.full_like(mine, known)[..., None],
-    )
-    found = validated(Opinions(*opinions), lines, neighbours, limit)
+    fields = (each[..., None] for each in (predicted, mine, np.full_like(mine, known)))
+    found = validated(Opinions(*fields, np.ones_like(mine), np.ones_like(mine)), lines, neighbours, limit)
     return found.value[1, 1, 0], found.row[1, 1], found
 
 
@@ -103,8 +98,8 @@ def test_the_median_of_vectors_is_a_member():
     random = np.random.default_rng(5)
     vectors = random.normal(size=(3, 3, 3)).astype(np.float32)
     vectors /= np.linalg.norm(vectors, axis=-1, keepdims=True)
-    nothing = np.full_like(vectors, np.nan)
-    found = validated(Opinions(vectors, np.ones((3, 3), np.float32), vectors, nothing), None, 8, 9.0)
+    nothing, one = np.full_like(vectors, np.nan), np.ones((3, 3), np.float32)
+    found = validated(Opinions(vectors, vectors, nothing, one, one), None, 8, 9.0)
     members = np.delete(vectors.reshape(9, 3), 4, axis=0)
     nearest = members[np.linalg.norm(members - np.median(members, axis=0), axis=1).argmin()]
     assert np.array_equal(found.value[1, 1], nearest)
@@ -128,7 +123,7 @@ def test_nobody_is_asked_across_a_boundary():
 
 
 def test_matches_that_lead_back_agree():
-    """Both views have disparity 3: neighbours predict 3, to the reliability they had; a lone outlier is replaced."""
+    """Both views have disparity 3: neighbours predict 3, as reliable as they were; an outlier is replaced."""
     field = np.full((8, 16), 3, np.float32)
     wrong = field.copy()
     wrong[4, 10] = 9
