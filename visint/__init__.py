@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from visint.module import Params as Params
     from visint.module import Ports as Ports
     from visint.results import Result as Result
+    from visint.results.report.notebook import show as show
 
 __version__ = "0.1.0"
 
@@ -63,6 +64,7 @@ _HOME = {
     "alter": "graph",
     "load": "graph",
     "run": "engine",
+    "show": "results.report.notebook",
 }
 
 __all__ = [*sorted(_HOME), "__version__"]  # noqa: PLE0604 - the table is the list

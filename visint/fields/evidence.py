@@ -64,6 +64,12 @@ class Evidence(BaseModel):
     sigma: Sigma[Array, "H W"]
     reliability: Confidence[Array, "H W"]
 
+    def _repr_html_(self) -> str:
+        """Value, sigma and reliability side by side, for notebooks."""
+        from visint.fields.notebook import html_of
+
+        return html_of(self)
+
     @classmethod
     def of(cls, value: Array, sigma: Array | float, reliability: Array | float) -> Self:
         """Evidence that abstains wherever any of the three says so.

@@ -52,6 +52,12 @@ class MapSnapshot:
     writers: Mapping[str, Writer] = field(default_factory=dict)
     _derived: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
 
+    def _repr_html_(self) -> str:
+        """Each field and its confidence, for notebooks."""
+        from visint.fields.notebook import html_of
+
+        return html_of(self)
+
     def read(self, name: str) -> Any:
         """A stored field, its ``<field>_confidence``, the ``map`` itself, or a derived field.
 

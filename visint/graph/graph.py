@@ -158,6 +158,12 @@ class Graph:
         """The pyramid that ``loop`` is or lies in, if any."""
         return next((name for name in self.loops_around(loop) if self.loops[name].pyramid), None)
 
+    def _repr_html_(self) -> str:
+        """The graph drawn, for notebooks."""
+        from visint.graph.drawing import to_svg
+
+        return to_svg(self.spec)
+
     def to_yaml(self) -> str:
         """The graph as the text of a graph file; reading it gives an equal graph."""
         from visint.graph.write import to_yaml

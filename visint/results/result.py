@@ -85,6 +85,12 @@ class Result(Mapping[str, Any]):
         outputs = ", ".join(f"{name}: {kind}" for name, kind in self.kinds.items())
         return f"<Result of {self.graph.name!r}: {outputs}; {self.seconds:.2f} s>"
 
+    def _repr_html_(self) -> str:
+        """The outputs as small pictures, for notebooks; :func:`visint.show` has the whole report."""
+        from visint.results.report.notebook import html_of
+
+        return html_of(self)
+
     @property
     def camera(self) -> Camera | None:
         """The camera among the inputs, if there was one."""

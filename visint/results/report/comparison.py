@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from typing import Any
 
 from visint.arrays import Array
@@ -71,16 +71,22 @@ def _runs(setting: Setting, other: Against) -> Iterator[Row]:
     result = setting.result
     yield "graph", result.graph.name, other.graph
     yield "time", seconds(result.seconds), "unknown" if other.seconds is None else seconds(other.seconds)
-    here, there = _flat(parameters(result.graph)), _flat(other.parameters)
+    mine = parameters(result.graph)
+    both = mine.keys() & other.parameters.keys()
+    alone = [", ".join(sorted(nodes - both)) for nodes in (mine.keys(), other.parameters.keys())]
+    if any(alone):
+        yield "nodes of one alone", alone[0] or "–", alone[1] or "–"
+    here, there = _flat(mine, both), _flat(other.parameters, both)
     for name in sorted(here.keys() | there.keys()):
         if here.get(name) != there.get(name):
             yield element("code", name), here.get(name, "–"), there.get(name, "–")
 
 
-def _flat(by_node: Mapping[str, Mapping[str, Any]]) -> dict[str, str]:
-    """``node.parameter`` → its value as JSON."""
+def _flat(by_node: Mapping[str, Mapping[str, Any]], nodes: Set[str]) -> dict[str, str]:
+    """``node.parameter`` → its value as JSON, of these nodes."""
     return {
         f"{node}.{name}": json.dumps(value, ensure_ascii=False, default=str)
         for node, told in by_node.items()
+        if node in nodes
         for name, value in told.items()
     }

@@ -171,7 +171,7 @@ function turned(yaw, pitch) {
   return [c, s * t, -s * d, 0, d, t, s, -c * t, c * d]; // columns of Rx(pitch) Ry(yaw)
 }
 
-const START = { yaw: 0.45, pitch: -0.25, away: 2.2 };
+const START = { yaw: 0.45, pitch: -0.25, away: 1.8 };
 const OPENING = 2.1; // 1 / tan of half the angle of view
 
 function painter(gl, mesh, pose) {
@@ -206,7 +206,7 @@ function move(pose, by) {
 }
 
 const KEYS = {
-  ArrowLeft: { yaw: -0.1 }, ArrowRight: { yaw: 0.1 }, ArrowUp: { pitch: -0.1 }, ArrowDown: { pitch: 0.1 },
+  ArrowLeft: { yaw: 0.1 }, ArrowRight: { yaw: -0.1 }, ArrowUp: { pitch: -0.1 }, ArrowDown: { pitch: 0.1 },
   "+": { away: 0.9 }, "=": { away: 0.9 }, "-": { away: 1 / 0.9 },
 };
 
@@ -222,7 +222,7 @@ function listen(canvas, pose, paint) {
   });
   canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); canvas.focus({ preventScroll: true }); });
   canvas.addEventListener("pointermove", (event) => {
-    if (event.buttons) change({ yaw: event.movementX * 0.008, pitch: event.movementY * 0.008 });
+    if (event.buttons) change({ yaw: -event.movementX * 0.008, pitch: event.movementY * 0.008 });
   });
   // The wheel zooms only what was clicked or tabbed to: a page that is read through does not stop here.
   canvas.addEventListener("wheel", (event) => {
