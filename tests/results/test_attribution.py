@@ -46,8 +46,9 @@ def test_one_map_a_cue_in_the_report(followed, met, toys):
     page = report(followed)
     assert 'id="attribution"' in page
     titles = [alt for alt, _ in toys.pictures(page)]
-    for cue in ("shade", "match", "edges"):
+    for cue in ("shade", "match"):
         assert any(alt.startswith(f"Confidence {cue}") for alt in titles)
+    assert "edges decided all of it." in page
     assert 'id="attribution"' not in report(met)
 
 

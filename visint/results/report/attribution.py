@@ -34,9 +34,11 @@ def _field(setting: Setting, name: str, weights: Mapping[str, Array]) -> Iterato
     yield element("h3", name, " ", element("small", _shares(weights)))
     rest = _rest(weights)
     shown = {**weights, **({"start": rest} if float(rest.mean()) > _LEAST else {})}
-    yield element(
-        "div", *(setting.over_view(cue, "Confidence", one) for cue, one in shown.items()), class_="row"
-    )
+    if len(shown) == 1:
+        yield element("p", f"{next(iter(shown))} decided all of it.")
+        return
+    figures = [setting.over_view(cue, "Confidence", one) for cue, one in shown.items()]
+    yield element("div", *figures, class_="row" if len(figures) > 2 else "grid")
 
 
 def _rest(weights: Mapping[str, Array]) -> Array:
