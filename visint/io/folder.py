@@ -16,6 +16,7 @@ from types import TracebackType
 from typing import Self
 
 from visint.errors import InputError, OutputError
+from visint.io import faults
 from visint.io.files import shown
 from visint.io.text import read_json
 from visint.io.write import existing_ancestor, sync_folder, told, write_bytes
@@ -116,6 +117,7 @@ class OutputFolder:
                 shutil.rmtree(stale, ignore_errors=True)
         home = existing_ancestor(self.path)
         stage = home / f"{_HIDDEN}{secrets.token_hex(6)}"
+        faults.step("folder")
         stage.mkdir()
         self._stage = stage
 
@@ -156,8 +158,10 @@ class OutputFolder:
     def _renamed(self) -> bool:
         """Whether the hidden folder could simply take the name: one step, nothing in between."""
         assert self._stage is not None
+        faults.step("folder")
         self.path.parent.mkdir(parents=True, exist_ok=True)
         try:
+            faults.step("rename")
             self._stage.rename(self.path)
         except OSError as error:
             if error.errno in _TAKEN:
@@ -172,6 +176,7 @@ class OutputFolder:
         gone = [name for name in former_files(self.path) if name not in new]
         out = [name for name in (RECORD, *gone, *new) if (self.path / name).is_file()]
         former = stage / _FORMER
+        faults.step("folder")
         former.mkdir()
         moves = [(self.path / name, former / name) for name in dict.fromkeys(out)]
         return moves + [(stage / name, self.path / name) for name in new]
@@ -212,6 +217,7 @@ def _all_or_none(moves: Iterable[tuple[Path, Path]]) -> None:
     done: list[tuple[Path, Path]] = []
     try:
         for source, goal in moves:
+            faults.step("rename")
             source.rename(goal)
             done.append((source, goal))
     except BaseException:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeGuard
 
 import numpy as np
 
@@ -151,5 +151,5 @@ class _Reader:
         return np.array(data, dtype=np.float64).reshape([int(one) for one in shape])
 
 
-def _numbers(value: Any) -> bool:
+def _numbers(value: Any) -> TypeGuard[list[float]]:
     return isinstance(value, list) and bool(value) and all(isinstance(one, float) for one in value)

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from visint.errors import OutputError
+from visint.io import faults
 from visint.io.files import shown
 
 __all__ = ["existing_ancestor", "make_folder", "sync_folder", "told", "write_bytes", "write_text"]
@@ -41,13 +42,12 @@ def write_bytes(path: str | Path, data: bytes) -> None:
         temporary = path.with_name(f".visint-{secrets.token_hex(6)}.part")
         try:
             _put(temporary, data)
+            faults.step("rename")
             temporary.replace(path)
         except BaseException:  # Ctrl-C too
             with contextlib.suppress(OSError):
                 temporary.unlink()
             raise
-        if path.stat().st_size != len(data):
-            raise OSError(errno.EIO, "fewer bytes arrived than were written")
 
 
 def write_text(path: str | Path, text: str) -> None:
@@ -59,18 +59,25 @@ def make_folder(path: str | Path) -> None:
     """A folder, its parents where needed; one that is there is fine. OutputError VI601 where it cannot be."""
     path = Path(path)
     with told(path):
+        faults.step("folder")
         path.mkdir(parents=True, exist_ok=True)
 
 
 def _put(path: Path, data: bytes) -> None:
+    faults.step("open")
     with path.open("xb") as file:
-        file.write(data)
+        faults.step("write")
+        file.write(faults.cut(data))
         file.flush()
+        faults.step("sync")
         os.fsync(file.fileno())
+        if os.fstat(file.fileno()).st_size != len(data):
+            raise OSError(errno.EIO, "fewer bytes arrived than were written")
 
 
 def sync_folder(folder: Path) -> None:
     """Flush a folder's entries to disk, so that renames in it outlive a power cut."""
+    faults.step("sync")
     handle = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(handle)
