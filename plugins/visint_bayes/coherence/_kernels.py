@@ -107,8 +107,7 @@ def cohere(predicted, own, told, prior, reached, neighbours, limit, value, kept,
 
 @njit(cache=True, nogil=True)
 def _gather(predicted, told, reached, neighbours, y, members, there, count, kept):
-        seen, total = linked[low:high], count[low:high]
-        sums, widths = worth[low:high], width[low:high]
+    """The predictions for the pixels of row ``y`` by neighbour, 0 where there is none, and what they are worth."""
     channels, _, columns = predicted.shape
     count[:] = 0
     worth, width = kept[0, y], kept[1, y]
@@ -130,7 +129,8 @@ def _gather(predicted, told, reached, neighbours, y, members, there, count, kept
         open_, here = reached[y, low:high], there[k, low:high]  # slices: an index x + across hinders SIMD
         values = predicted[0, v, low + across : high + across]
         sure, spread = told[0, v, low + across : high + across], told[1, v, low + across : high + across]
-        seen, total, sums, widths = linked[low:high], count[low:high], worth[low:high], width[low:high]
+        seen, total = linked[low:high], count[low:high]
+        sums, widths = worth[low:high], width[low:high]
         for x in range(high - low):
             link = one if open_[x] & bit else nil
             seen[x] += link

@@ -35,7 +35,7 @@ class TestNormals(ModuleContract):
 
 
 def judged(around, known, limit=1.0, own=7.0, neighbours=4, lines=None):
-    """The verdict on the middle of 3 × 3 pixels, whose neighbours predict ``around``, from above to the right."""
+    """The verdict on the middle of 3 × 3 pixels, whose neighbours, from above on, say ``around``."""
     predicted = np.full((3, 3), np.nan, np.float32)
     places = [(0, 1), (1, 2), (2, 1), (1, 0), (0, 0), (0, 2), (2, 2), (2, 0)]
     for place, value in zip(places, around, strict=False):
