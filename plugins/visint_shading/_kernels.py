@@ -1,0 +1,219 @@
+# mypy: ignore-errors
+# ruff: noqa: PLR0917 - kernels take what they need
+"""Compiled loops of the shading plugin: means inside regions, sums by region, and heights along least cost.
+
+All arrays are C-contiguous and read-only unless named ``out``; labels are int32 (H, W), 0 takes no part.
+"""
+
+import numpy as np
+from numba import njit
+
+__all__ = ["agreement_sums", "evened", "fitted", "heights", "relative_slopes"]
+
+
+@njit(cache=True, nogil=True)
+def evened(labels, decays, out):
+    """Recursive means along rows and columns, forth and back, that stop where the label changes.
+
+    Parameters: ``decays`` float32 (n,), what a neighbour keeps, one a round (Gastal and Oliveira 2011,
+    doi:10.1145/2010324.1964964, Eq. 21 with label changes as edges of infinite height). ``out`` float32
+    (C, H, W) is changed in place; a constant stays what it is.
+    """
+    channels, rows, columns = out.shape
+    for decay in decays:
+        for k in range(channels):
+            plane = out[k]
+            for y in range(rows):
+                for x in range(1, columns):
+                    if labels[y, x] == labels[y, x - 1]:
+                        plane[y, x] += decay * (plane[y, x - 1] - plane[y, x])
+                for x in range(columns - 2, -1, -1):
+                    if labels[y, x] == labels[y, x + 1]:
+                        plane[y, x] += decay * (plane[y, x + 1] - plane[y, x])
+            for y in range(1, rows):
+                for x in range(columns):
+                    if labels[y, x] == labels[y - 1, x]:
+                        plane[y, x] += decay * (plane[y - 1, x] - plane[y, x])
+            for y in range(rows - 2, -1, -1):
+                for x in range(columns):
+                    if labels[y, x] == labels[y + 1, x]:
+                        plane[y, x] += decay * (plane[y + 1, x] - plane[y, x])
+
+
+@njit(cache=True, nogil=True)
+def relative_slopes(nearness, weight, labels, out):
+    """Slopes of ln Z a pixel from ``nearness`` 1/Z (NaN unknown), inside regions only.
+
+    ``out`` float32 (3, H, W): weighted p = ∂lnZ/∂u, q = ∂lnZ/∂v, and the weight; 0 where nothing is known.
+    """
+    rows, columns = nearness.shape
+    for y in range(rows):
+        for x in range(columns):
+            here = nearness[y, x]
+            out[0, y, x] = out[1, y, x] = out[2, y, x] = 0.0
+            label = labels[y, x]
+            if label == 0 or not here > 0.0:
+                continue
+            known = True
+            for axis in range(2):
+                total, count = 0.0, 0
+                for side in (-1, 1):
+                    j, i = (y, x + side) if axis == 0 else (y + side, x)
+                    if 0 <= j < rows and 0 <= i < columns and labels[j, i] == label:
+                        there = nearness[j, i]
+                        if there > 0.0:
+                            total += side * (there - here)
+                            count += 1
+                if count == 0:
+                    known = False
+                else:
+                    out[axis, y, x] = -total / count / here * weight[y, x]
+            if known:
+                out[2, y, x] = weight[y, x]
+            else:
+                out[0, y, x] = out[1, y, x] = 0.0
+
+
+@njit(cache=True, nogil=True)
+def fitted(brightness, cosine, weight, labels, tolerance, rounds, out):
+    """Albedo a region by robust regression of brightness on ``cosine`` through the origin.
+
+    ``out`` float64 (N + 1,): start (0: least squares) and result. Geman-McClure weights with residuals of
+    ``tolerance`` times the albedo.
+    """
+    top = np.zeros(out.size)
+    bottom = np.zeros(out.size)
+    rows, columns = labels.shape
+    for _ in range(rounds):
+        top[:] = 0.0
+        bottom[:] = 0.0
+        for y in range(rows):
+            for x in range(columns):
+                label = labels[y, x]
+                w = weight[y, x]
+                if label == 0 or not w > 0.0:
+                    continue
+                c = cosine[y, x]
+                e = brightness[y, x]
+                if out[label] > 0.0:
+                    r = (e / out[label] - c) / tolerance
+                    w /= (1.0 + r * r) ** 2
+                top[label] += w * e * c
+                bottom[label] += w * c * c
+        for label in range(out.size):
+            if bottom[label] > 0.0:
+                out[label] = top[label] / bottom[label]
+
+
+@njit(cache=True, nogil=True)
+def agreement_sums(even, wide, cosine, shade, labels, least, out):
+    """Sums a region for the test of the model, over pixels whose ``cosine`` is at least ``least``.
+
+    Parameters: ``even`` brightness, ``wide`` the same evened as widely as the normals behind ``cosine`` (both
+    NaN unknown), ``shade`` cosine and ambient. ``out`` float64 (N + 1, 9): pixels, sums of E, E², c, c², E·c,
+    of r and r² with r = E/shade, and of the squared difference of ``even`` and E; E is ``wide``.
+    """
+    rows, columns = labels.shape
+    for y in range(rows):
+        for x in range(columns):
+            label = labels[y, x]
+            c = cosine[y, x]
+            if label == 0 or not c >= least:
+                continue
+            e = wide[y, x]
+            if not e > 0.0:
+                continue
+            r = e / shade[y, x]
+            d = even[y, x] - e
+            row = out[label]
+            row[0] += 1.0
+            row[1] += e
+            row[2] += e * e
+            row[3] += c
+            row[4] += c * c
+            row[5] += e * c
+            row[6] += r
+            row[7] += r * r
+            row[8] += d * d
+
+
+@njit(cache=True, nogil=True)
+def heights(conic, labels, seeds, tolerance, rounds, cost, sign):
+    """Least cost from the seeds, each pixel's gradient lying on its conic; fast sweeping of right triangles.
+
+    The Hamilton-Jacobi equation A p² + 2B pq + C q² + 2D p + 2E q = 1 (an ellipse around 0 in the gradient
+    (p, q)), solved as in Qian, Zhang and Zhao 2007 (doi:10.1137/050627083): of each pair of a horizontal and a
+    vertical neighbour the larger root counts if its characteristic comes from between them, else the better of
+    the two straight steps. Where the surface bends towards the viewer costs are heights the other way round:
+    the conic is then mirrored (D and E change sign).
+
+    Parameters: ``conic`` float32 (5, H, W): A, B, C, D, E. ``seeds`` int8 (H, W): +1 convex, −1 concave, 0 no
+    seed. ``cost`` float32 (H, W), changed: the seeds' own at the seeds, large elsewhere. ``sign`` int8 (H, W),
+    changed: which kind of seed a pixel was reached from; 0 not reached. Ends when no cost falls by more than
+    ``tolerance``, or after ``rounds`` rounds of four sweeps.
+    """
+    rows, columns = labels.shape
+    for _ in range(rounds):
+        changed = 0.0
+        for way in range(4):
+            dy = 1 if way < 2 else -1
+            dx = 1 if way % 2 == 0 else -1
+            y0, y1 = (0, rows) if dy > 0 else (rows - 1, -1)
+            x0, x1 = (0, columns) if dx > 0 else (columns - 1, -1)
+            for y in range(y0, y1, dy):
+                for x in range(x0, x1, dx):
+                    label = labels[y, x]
+                    if label == 0 or seeds[y, x] != 0:
+                        continue
+                    across = 0 <= x - dx < columns and labels[y, x - dx] == label and sign[y, x - dx] != 0
+                    down = 0 <= y - dy < rows and labels[y - dy, x] == label and sign[y - dy, x] != 0
+                    if not (across or down):
+                        continue
+                    a, b, c = conic[0, y, x], conic[1, y, x], conic[2, y, x]
+                    best = cost[y, x]
+                    kind = sign[y, x]
+                    det = a * c - b * b
+                    if across:
+                        s = sign[y, x - dx]
+                        d, e = s * conic[3, y, x], s * conic[4, y, x]
+                        # support of the ellipse along the step: centre plus half width
+                        m = (b * e - c * d) / det
+                        n = (b * d - a * e) / det
+                        size = 1.0 + a * m * m + 2 * b * m * n + c * n * n
+                        step = dx * m + np.sqrt(max(size * c / det, 0.0))
+                        value = cost[y, x - dx] + max(step, 0.0)
+                        if value < best:
+                            best, kind = value, s
+                    if down:
+                        s = sign[y - dy, x]
+                        d, e = s * conic[3, y, x], s * conic[4, y, x]
+                        m = (b * e - c * d) / det
+                        n = (b * d - a * e) / det
+                        size = 1.0 + a * m * m + 2 * b * m * n + c * n * n
+                        step = dy * n + np.sqrt(max(size * a / det, 0.0))
+                        value = cost[y - dy, x] + max(step, 0.0)
+                        if value < best:
+                            best, kind = value, s
+                    if across and down and sign[y, x - dx] == sign[y - dy, x]:
+                        s = sign[y, x - dx]
+                        d, e = s * conic[3, y, x], s * conic[4, y, x]
+                        u, v = cost[y, x - dx], cost[y - dy, x]
+                        bb = b * dx * dy
+                        dd, ee = d * dx, e * dy
+                        # p = dx (t - u), q = dy (t - v): a quadratic in t
+                        qa = a + 2 * bb + c
+                        qb = -(a * u + bb * (u + v) + c * v) + dd + ee
+                        qc = a * u * u + 2 * bb * u * v + c * v * v - 2 * dd * u - 2 * ee * v - 1.0
+                        disc = qb * qb - qa * qc
+                        if disc >= 0.0:
+                            t = (-qb + np.sqrt(disc)) / qa
+                            along = a * (t - u) + bb * (t - v) + dd
+                            beside = bb * (t - u) + c * (t - v) + ee
+                            if along >= 0.0 and beside >= 0.0 and t < best:
+                                best, kind = t, s
+                    if best < cost[y, x]:
+                        changed = max(changed, cost[y, x] - best)
+                        cost[y, x] = best
+                        sign[y, x] = kind
+        if changed <= tolerance:
+            break

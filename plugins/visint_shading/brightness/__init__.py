@@ -1,0 +1,1 @@
+"""Brightness before any model: its noise, its means inside regions, its fine contrast."""

@@ -1,0 +1,50 @@
+"""Means inside regions: no value crosses into another region, none comes from where nothing is known."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from visint.arrays import Array
+
+__all__ = ["evened", "gain"]
+
+ROUNDS = 2
+
+
+def evened(values: Array, weight: Array, labels: Array, length: float) -> tuple[Array, Array]:
+    """Weighted local means of ``values`` and how much weight stood behind them.
+
+    Parameters
+    ----------
+    values
+        float32 (C, H, W), already multiplied by ``weight`` float32 (H, W).
+    labels
+        int32 (H, W): means stop where the label changes.
+    length
+        Standard deviation of the mean's window, pixels; below 0.3 values are returned as they are.
+
+    Returns
+    -------
+    float32 (C, H, W), NaN where no weight is near; float32 (H, W).
+    """
+    from visint_shading import _kernels
+
+    both = np.concatenate([values, weight[None]]).astype(np.float32)
+    if length >= 0.3:
+        _kernels.evened(labels, _decays(length), both)
+    sure = both[-1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(sure > 1e-4, both[:-1] / sure, np.float32(np.nan)), sure
+
+
+def _decays(length: float) -> Array:
+    """What a neighbour keeps in each round, so that all together have the variance of ``length``²."""
+    shares = [math.sqrt(3) * 2 ** (ROUNDS - i - 1) / math.sqrt(4**ROUNDS - 1) for i in range(ROUNDS)]
+    return np.array([math.exp(-math.sqrt(2) / (length * share)) for share in shares], np.float32)
+
+
+def gain(length: float) -> float:
+    """What is left of white noise's standard deviation after :func:`evened` by ``length``."""
+    return 1.0 if length < 0.3 else min(1.0, 1 / (2 * math.sqrt(math.pi) * length))

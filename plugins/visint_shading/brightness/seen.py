@@ -1,0 +1,53 @@
+"""A view as shading sees it: even brightness inside regions, and what was evened out."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from visint.arrays import Array
+from visint_shading.brightness.evening import evened, gain
+from visint_shading.brightness.noise import noise_of
+from visint_shading.brightness.patches import patches
+
+__all__ = ["Seen", "seen"]
+
+SATURATED = 0.995
+
+
+class Seen(NamedTuple):
+    """Brightness inside regions.
+
+    ``labels``: int32 (H, W), 0 where nothing is said. ``even``: float32 (H, W), brightness freed from noise,
+    NaN at label 0. ``noise``: its standard deviation in the image; ``spread``: what is left of it in ``even``.
+    """
+
+    labels: Array
+    even: Array
+    noise: float
+    spread: float
+
+    @property
+    def regions(self) -> int:
+        """The largest label."""
+        return int(self.labels.max(initial=0))
+
+
+def seen(image: Array, regions: Array | None, boundaries: Array | None, span: float = 1.0) -> Seen:
+    """``image`` float32 (H, W) inside its regions.
+
+    The noisier the image, the wider the mean. ``span`` scales it: 1 suits images about 256 pixels wide.
+    What is hardly brighter than noise, or saturated, gets label 0.
+    """
+    noise = noise_of(image)
+    usable = np.isfinite(image) & (image < SATURATED)
+    labels = patches(usable, regions, boundaries)
+    length = 0.0 if noise < 1e-3 else (0.7 + 28 * noise) * span
+    weight = (labels > 0).astype(np.float32)
+    plain = np.where(labels > 0, image, 0).astype(np.float32)
+    even = evened(plain[None], weight, labels, length)[0][0]
+    left = noise * gain(length)
+    with np.errstate(invalid="ignore"):
+        labels = np.where(even > 0.02 + noise, labels, 0).astype(np.int32)
+    return Seen(labels, np.where(labels > 0, even, np.float32(np.nan)), noise, left)

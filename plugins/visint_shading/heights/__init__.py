@@ -1,0 +1,1 @@
+"""Heights from the brightest points on, after Oliensis and Dupuis."""

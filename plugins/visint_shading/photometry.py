@@ -1,0 +1,147 @@
+"""All that brightness says before a direction is chosen: what every module of the plugin starts from."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from visint.arrays import Array, Boundaries, Confidence, Depth, Image, Mask, Normals, Regions
+from visint.fields import Camera, Light
+from visint.module import Ports
+from visint_shading.brightness.seen import Seen, seen
+from visint_shading.lighting.estimate import LightFit, estimated
+from visint_shading.lighting.rays import light_directions
+from visint_shading.reflectance.albedo import Albedo, albedo_by_region, given_by_region
+from visint_shading.reflectance.judgement import Agreement, agreement_of, trust_of
+from visint_shading.surface.orientation import Orientation, from_depth, from_normals
+
+__all__ = ["Photometry", "ShadingInputs", "photometry_of"]
+
+UNTESTED = 0.3
+"""Trust where there is no surface to hold brightness against."""
+
+
+class ShadingInputs(Ports):
+    """A view, the map so far, and what is known of light and surfaces.
+
+    ``depth`` and its confidence (or else ``normals``) say how surfaces are turned; ``regions`` (or else
+    ``boundaries``) where one albedo ends. An unknown ``light`` is estimated from both; without a ``camera`` 53°
+    of view. ``albedo`` (NaN or 0 unknown), ``ambient`` (in parts of albedo) and ``highlights`` may come from
+    other modules; without them the first two are estimated and only what is saturated is left out.
+    """
+
+    image: Image[Array, "H W"]
+    depth: Depth[Array, "H W"] | None = None
+    depth_confidence: Confidence[Array, "H W"] | None = None
+    normals: Normals[Array, "H W 3"] | None = None
+    regions: Regions[Array, "H W"] | None = None
+    boundaries: Boundaries[Array, "H W"] | None = None
+    light: Light | None = None
+    camera: Camera | None = None
+    albedo: Image[Array, "H W"] | None = None
+    ambient: float | None = None
+    highlights: Mask[Array, "H W"] | None = None
+
+
+class Photometry(NamedTuple):
+    """What brightness says, pixel by pixel and region by region.
+
+    ``orientation`` is the map's surface, ``light`` unit vectors (3,) or (H, W, 3); None if not known.
+    ``incidence`` is what brightness makes of it, NaN where it says
+    nothing, with ``sigma`` and ``reliability``, float32 (H, W). ``trust`` is by label.
+    """
+
+    camera: Camera
+    seen: Seen
+    orientation: Orientation | None
+    light: Array | None
+    light_trust: float
+    albedo: Albedo
+    agreement: Agreement | None
+    trust: Array
+    incidence: Array
+    sigma: Array
+    reliability: Array
+
+
+def photometry_of(inputs: ShadingInputs, window: float) -> Photometry:
+    """Albedo, incidence and trust of ``inputs``; ``window`` is that of the map's normals, pixels."""
+    rows, columns = inputs.image.shape
+    camera = inputs.camera or Camera.uncalibrated(columns, rows)
+    view = seen(inputs.image, inputs.regions, inputs.boundaries, window / 6)
+    surface = _surface(inputs, view.labels, camera, window)
+    fit = _light(inputs, view, surface)
+    directions = None if fit is None else light_directions(fit.light, inputs.depth, camera)
+    ambient = inputs.ambient if inputs.ambient is not None else (fit.ambient if fit else 0.0)
+    cosine = None
+    if surface is not None and directions is not None:
+        cosine = (surface.normals * directions).sum(axis=-1)
+    albedo = _albedo(inputs.albedo, view, cosine, ambient)
+    found = None
+    if cosine is not None:
+        found = agreement_of(view.even, view.spread, view.labels, cosine, ambient, window)
+    trust = _trust(found, albedo, fit)
+    return Photometry(
+        camera,
+        view,
+        surface,
+        directions,
+        fit.trust if fit else 0.0,
+        albedo,
+        found,
+        trust,
+        *_incidence(view, albedo, ambient, trust, inputs.highlights),
+    )
+
+
+def _surface(inputs: ShadingInputs, labels: Array, camera: Camera, window: float) -> Orientation | None:
+    if inputs.depth is not None:
+        return from_depth(inputs.depth, inputs.depth_confidence, labels, camera, window)
+    if inputs.normals is not None:
+        return from_normals(inputs.normals, labels, window)
+    return None
+
+
+def _light(inputs: ShadingInputs, view: Seen, surface: Orientation | None) -> LightFit | None:
+    if inputs.light is not None and inputs.light.place != "unknown":
+        return LightFit(inputs.light, 0.0, 0.0, 1.0)
+    return None if surface is None else estimated(view, surface)
+
+
+def _albedo(given: Array | None, view: Seen, cosine: Array | None, ambient: float) -> Albedo:
+    if given is not None:
+        return given_by_region(given, view.labels)
+    return albedo_by_region(view.even, view.labels, cosine, view.spread, ambient)
+
+
+def _trust(found: Agreement | None, albedo: Albedo, fit: LightFit | None) -> Array:
+    if fit is None:
+        return np.zeros_like(albedo.value)
+    return np.full(albedo.value.size, UNTESTED) if found is None else trust_of(found, albedo.value) * fit.trust
+
+
+def _incidence(
+    view: Seen, albedo: Albedo, ambient: float, trust: Array, highlights: Array | None
+) -> tuple[Array, Array, Array]:
+    """Cosine of incidence (H, W) from brightness, its sigma and its reliability."""
+    labels = np.where(albedo.value[view.labels] > 0, view.labels, 0)
+    scale = albedo.value.astype(np.float32)[labels]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        raw = np.where(labels > 0, view.even / scale - np.float32(ambient), np.float32(np.nan))
+        noise = view.spread / scale
+    value = np.clip(raw, 0, 1).astype(np.float32)
+    error = albedo.error.astype(np.float32)[labels]
+    sigma = np.sqrt(noise**2 + (error * value) ** 2 + np.float32(0.01**2))
+    sure = trust.astype(np.float32)[labels] * _informs(raw, value)
+    if highlights is not None:
+        sure = np.where(highlights, 0, sure)
+    return value, sigma.astype(np.float32), np.nan_to_num(sure).astype(np.float32)
+
+
+def _informs(raw: Array, value: Array) -> Array:
+    """Less where a surface faces the light (slopes hardly change brightness), is too bright, or in shadow."""
+    facing = np.sqrt(np.maximum(1 - value * value, 0)) / np.float32(0.3)
+    shadow = (value - np.float32(0.08)) / np.float32(0.12)
+    excess = (np.float32(1.25) - raw) / np.float32(0.15)
+    return np.asarray(np.clip(facing, 0, 1) * np.clip(shadow, 0, 1) * np.clip(excess, 0, 1))

@@ -1,0 +1,1 @@
+"""How surfaces reflect: albedo a region, and whether the model holds there at all."""

@@ -1,0 +1,85 @@
+"""Albedo a region: from its brightest pixels where they face the light, else from all of them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from visint.arrays import Array
+
+__all__ = ["Albedo", "albedo_by_region", "given_by_region", "percentile_by_region"]
+
+FACING = 0.955
+"""Cosine of incidence (17°) from which a region's brightest pixels count as facing the light."""
+STEPS = 512
+
+
+class Albedo(NamedTuple):
+    """By label, float64 (N + 1,): the albedo (0 unknown), its relative error, and whether a maximum gave it."""
+
+    value: Array
+    error: Array
+    by_maximum: Array
+
+
+def percentile_by_region(values: Array, labels: Array, share: float) -> Array:
+    """float64 (N + 1,): the value that ``share`` of a region's pixels stay below; 0 for what is not there.
+
+    ``values`` are float32 (H, W) in [0, 1]; exact to 1/1024.
+    """
+    count = int(labels.max(initial=0)) + 1
+    inside = labels > 0
+    step = np.clip(values[inside] * STEPS, 0, STEPS - 1).astype(np.int64)
+    table = np.bincount(labels[inside] * np.int64(STEPS) + step, minlength=count * STEPS).reshape(count, STEPS)
+    below = np.cumsum(table, axis=1)
+    total = below[:, -1]
+    found = (below < share * total[:, None]).sum(axis=1)
+    return np.where(total > 0, (found + 0.5) / STEPS, 0.0)
+
+
+def albedo_by_region(even: Array, labels: Array, cosine: Array | None, spread: float, ambient: float) -> Albedo:
+    """Albedo of each region from brightness ``even`` (H, W) in [0, 1].
+
+    The robust maximum (99th percentile, erratum to section 4.2 C(iii)) where the map says that the brightest
+    pixels face the light; else brightness regressed on ``cosine`` + ``ambient``. Without ``cosine`` the
+    brightest pixels are taken to face the light. ``spread`` is the noise of ``even``.
+    """
+    count = int(labels.max(initial=0))
+    brightest = percentile_by_region(even, labels, 0.99) - 1.5 * spread
+    maximum = np.maximum(brightest, 0) / (1 + ambient)
+    if cosine is None:
+        return Albedo(maximum, np.full(count + 1, 0.1), maximum > 0)
+    regressed = _regressed(even, labels, cosine, ambient, count)
+    faces = _facing(even, labels, cosine, count) & (maximum > 0)
+    value = np.where(faces, maximum, regressed)
+    return Albedo(value, np.where(faces, 0.02, 0.05), faces)
+
+
+def _regressed(even: Array, labels: Array, cosine: Array, ambient: float, count: int) -> Array:
+    from visint_shading import _kernels
+
+    lit = np.isfinite(cosine) & (cosine > 0.35) & (labels > 0)
+    found = np.zeros(count + 1)
+    shade = (np.where(lit, cosine, 0) + np.float32(ambient)).astype(np.float32)
+    _kernels.fitted(even, shade, lit.astype(np.float32), labels, np.float32(0.1), 5, found)
+    return found
+
+
+def _facing(even: Array, labels: Array, cosine: Array, count: int) -> Array:
+    """Bool by label: the mean cosine of the brightest twentieth is large."""
+    bright = percentile_by_region(even, labels, 0.95)
+    top = (labels > 0) & np.isfinite(cosine)
+    top &= even >= bright[np.where(top, labels, 0)]
+    sums = np.bincount(labels[top], cosine[top], minlength=count + 1)
+    members = np.bincount(labels[top], minlength=count + 1)
+    return np.asarray(sums > FACING * np.maximum(members, 1))
+
+
+def given_by_region(albedo: Array, labels: Array) -> Albedo:
+    """The mean of a given albedo (H, W) over each region; NaN and 0 are unknown."""
+    known = (labels > 0) & (albedo > 0)
+    count = int(labels.max(initial=0)) + 1
+    members = np.bincount(labels[known], minlength=count)
+    value = np.bincount(labels[known], albedo[known], minlength=count) / np.maximum(members, 1)
+    return Albedo(value, np.full(count, 0.02), value > 0)
