@@ -13,6 +13,20 @@ visint_contract = 1
 def visint_modules() -> list[Any]:
     """The modules of this plugin; imported here so that finding the plugin costs nothing."""
     from visint_bayes.boundaries import Boundaries
+    from visint_bayes.coherence.disparity import CohereDepth, CohereDisparity
+    from visint_bayes.coherence.orientation import CohereNormals
+    from visint_bayes.depth import Depth
+    from visint_bayes.gradient import Gradient
     from visint_bayes.pairwise import Pairwise
+    from visint_bayes.pointwise import Pointwise
 
-    return [Boundaries, Pairwise]
+    coherence = [CohereDepth, CohereDisparity, CohereNormals]
+    return [*coherence, Boundaries, Depth, Gradient, Pairwise, Pointwise]
+
+
+@hookimpl
+def visint_policies() -> Any:
+    """``bayes.uniform``: chapter 5's coherence and consistency mapping for each kind of evidence."""
+    from visint_bayes.policy import UNIFORM
+
+    return {"uniform": UNIFORM}
