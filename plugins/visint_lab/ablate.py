@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,6 +11,8 @@ import typer
 if TYPE_CHECKING:
     import visint
     from visint_lab.datasets import Pair
+    from visint_lab.trials.contribution import Contribution
+    from visint_lab.trials.reconstruction import Reconstruction
 
 KEYS = ("rmse", "s", "median", "bad1", "bad2", "mae", "ause", "seconds")
 
@@ -23,34 +24,48 @@ def command(
     size: Annotated[int, typer.Option(min=32, max=2048, help="Rows and columns of a rendered scene.")] = 512,
     out: Annotated[Path | None, typer.Option(help="Folder for ablation.csv.")] = None,
 ) -> None:
-    """Show what each cue adds: a graph as it is, by its controls, without each spoke."""
+    """Show what each cue adds: a graph as it is, by its controls, without each spoke.
+
+    Under the scores stands what each cue contributes: the percentage of each error that it takes away,
+    negative where it does harm, and the mean share of the depth that it decided. A control is a cue whose
+    amplitude is zero, all else kept; it is set beside the cue whose name it bears.
+    """
+    from visint_lab.trials.contribution import contributions
     from visint_lab.trials.grid import aligned, as_csv, number
-    from visint_lab.trials.systems import SystemVariant, baseline_of, controls_of, cues_of
+    from visint_lab.trials.reconstruction import scored
+    from visint_lab.trials.systems import SystemVariant, baseline_of, controls_of, cues_of, reconstruct
 
     shown, light = _pair(pair, truth, size)
     stereo = SystemVariant(baseline_of(graph))
     variants = [SystemVariant(graph), *controls_of(graph), *cues_of(graph)]
     variants += [] if stereo in variants else [stereo]
-    found: dict[str, Mapping[str, float]] = {}
+    made: dict[str, Reconstruction] = {}
     for variant in variants:
         print(variant, file=sys.stderr)
-        found[str(variant)] = _scores(variant, shown, light)
+        made[str(variant)] = reconstruct(variant, shown, light, attribution=variant == variants[0])
+    found = {name: {**scored(one, shown), "seconds": one.cost.wall} for name, one in made.items()}
     keys = [key for key in KEYS if any(key in scores for scores in found.values())]
     rows = [[name, *(number(scores.get(key), 3) for key in keys)] for name, scores in found.items()]
     print(aligned(["", *keys], rows))
-    if len(variants) < 3:
+    own = contributions(variants[0], variants, found, made[str(variants[0])].shares)
+    if own:
+        print(f"\nWhat {graph} gains by a cue, % of each error; and how much of the depth the cue decided")
+        print(_contributed(own))
+    else:
         print(f"\n{graph} names no controls and has no spokes: there is nothing to leave out.")
     if out is not None:
         _save(out, as_csv(["", *keys], rows))
 
 
-def _scores(variant: object, pair: Pair, light: visint.Light | None) -> Mapping[str, float]:
-    from visint_lab.trials.reconstruction import scored
-    from visint_lab.trials.systems import SystemVariant, reconstruct
+def _contributed(own: list[Contribution]) -> str:
+    from visint_lab.trials.grid import aligned, number
 
-    assert isinstance(variant, SystemVariant)
-    found = reconstruct(variant, pair, light)
-    return {**scored(found, pair), "seconds": found.cost.wall}
+    keys = list(own[0].gains)
+    rows = [
+        [one.taken, *(number(one.gains.get(key)) for key in keys), number(100 * one.share) + " %"]
+        for one in own
+    ]
+    return aligned(["", *keys, "decided"], rows)
 
 
 def _pair(name: str, truth: Path | None, size: int) -> tuple[Pair, visint.Light | None]:

@@ -37,6 +37,8 @@ class Reconstruction:
         Of the depth, 0 in former holes; None if the system has none.
     seconds
         By node, of the run; empty if not known.
+    shares
+        Mean share in [0, 1] of the depth that a cue decided, by cue; empty if not followed.
     """
 
     system: str
@@ -47,6 +49,7 @@ class Reconstruction:
     cost: Cost
     confidence: Array | None = None
     seconds: Mapping[str, float] = field(default_factory=dict)
+    shares: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
     def of(cls, system: str, disparity: Array, pair: Pair, cost: Cost, **maps: Any) -> Reconstruction:
