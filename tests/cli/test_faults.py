@@ -1,4 +1,4 @@
-"""Every step of every write fails once: exit code 5, nothing half-written, the next run gives the same bytes."""
+"""Every step of every write fails once: exit 5, nothing half-written, and the next run gives the same bytes."""
 
 from __future__ import annotations
 

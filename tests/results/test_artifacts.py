@@ -110,7 +110,7 @@ def test_normals_are_an_npz_by_their_name_and_a_picture(cue):
     value[..., 2] = -1
     files = only(with_output(cue, "normals", "Normals", value))
     assert set(files) == {"normals.npz", "normals.png"}
-    assert list(npz(files["normals.npz"])) == ["normals"]
+    assert list(npz(files["normals.npz"])) == ["normals", "normals.unit"]
     np.testing.assert_array_equal(npz(files["normals.npz"])["normals"], value)
     np.testing.assert_array_equal(png(files["normals.png"])[0, 0], [127, 127, 255])
 
@@ -173,7 +173,10 @@ def test_evidence_is_one_npz(met):
     """Value by its kind, sigma and reliability of each spoke; the match says disparity 8 × brightness."""
     arrays = npz(only(met)["evidence.npz"])
     of = {"edges": "boundaries", "shade": "depth", "match": "disparity"}
-    assert set(arrays) == {f"{s}.{p}" for s, kind in of.items() for p in (kind, "sigma", "reliability")}
+    wanted = {f"{s}.{p}" for s, kind in of.items() for p in (kind, "sigma", "reliability")}
+    units = {f"{s}.{p}.unit" for s, kind in of.items() for p in (kind, "sigma")}
+    assert set(arrays) == wanted | units
+    assert arrays["match.disparity.unit"].item() == arrays["match.sigma.unit"].item() == "px"
     np.testing.assert_allclose(arrays["match.disparity"], met.inputs["right"] * 8, rtol=1e-6)
     np.testing.assert_array_equal(arrays["match.sigma"], 0.5)
 

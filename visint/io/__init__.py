@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from visint.io.files import read_bytes as read_bytes
     from visint.io.folder import OutputFolder as OutputFolder
     from visint.io.folder import is_run as is_run
+    from visint.io.glb import encode_glb as encode_glb
     from visint.io.inputs import read as read
     from visint.io.inputs import read_color as read_color
     from visint.io.inputs import read_image as read_image
@@ -53,6 +54,7 @@ _HOME = {
     "OutputFolder": "folder",
     "Raster": "raster",
     "digest": "files",
+    "encode_glb": "glb",
     "encode_kitti": "kitti",
     "encode_npy": "npy",
     "encode_npz": "npz",

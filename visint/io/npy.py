@@ -14,7 +14,7 @@ from visint.arrays import Array, read_only
 from visint.io.limits import Limits
 from visint.io.refusals import broken, inexact
 
-__all__ = ["encode_npy", "npy_array", "npy_header"]
+__all__ = ["encode_npy", "encode_text", "npy_array", "npy_header"]
 
 _PLAIN = "biufc"
 _HEADER_BYTES = 16_384
@@ -77,6 +77,15 @@ def encode_npy(array: Array) -> bytes:
     """
     if array.dtype.kind not in _PLAIN:
         raise inexact(f"an array of {array.dtype} is not written; wants plain numbers or booleans")
+    return _written(np.asarray(array, order="C"))
+
+
+def encode_text(text: str) -> bytes:
+    """An npy file of one text, read by ``numpy.load(…).item()``: no pickle is in it."""
+    return _written(np.array(text, dtype=f"<U{max(1, len(text))}"))
+
+
+def _written(array: Array) -> bytes:
     stream = io.BytesIO()
-    npy_format.write_array(stream, np.asarray(array, order="C"), version=(1, 0), allow_pickle=False)
+    npy_format.write_array(stream, array, version=(1, 0), allow_pickle=False)
     return stream.getvalue()

@@ -7,17 +7,21 @@ import zipfile
 import zlib
 from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 from visint.arrays import Array
 from visint.errors import InputError
 from visint.io.files import read_bytes, shown
 from visint.io.formats import Format, format_of
 from visint.io.limits import LIMITS, Limits
-from visint.io.npy import encode_npy, npy_array, npy_header
+from visint.io.npy import encode_npy, encode_text, npy_array, npy_header
 from visint.io.refusals import broken, unfit
 
 __all__ = ["encode_npz", "npz_array", "read_npz"]
 
+UNIT = ".unit"
+"""Ends the key of a unit, which stands beside the array it is of."""
+_NO_UNITS: Mapping[str, str] = MappingProxyType({})
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 _MOST_ENTRIES = 4096
 _HEAD = 16_384
@@ -66,7 +70,9 @@ def _opened(data: bytes, name: str, limits: Limits) -> zipfile.ZipFile:
 
 
 def _keys(archive: zipfile.ZipFile) -> dict[str, zipfile.ZipInfo]:
-    return {e.filename.removesuffix(".npy"): e for e in archive.infolist() if e.filename.endswith(".npy")}
+    """The arrays by key; a text beside one, its unit, is none."""
+    found = {e.filename.removesuffix(".npy"): e for e in archive.infolist() if e.filename.endswith(".npy")}
+    return {key: e for key, e in found.items() if not (key.endswith(UNIT) and key.removesuffix(UNIT) in found)}
 
 
 def _member(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, name: str, limits: Limits) -> Array:
@@ -82,13 +88,15 @@ def _member(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, name: str, limits:
     return npy_array(data, place, limits)
 
 
-def encode_npz(arrays: Mapping[str, Array]) -> bytes:
+def encode_npz(arrays: Mapping[str, Array], units: Mapping[str, str] = _NO_UNITS) -> bytes:
     """An npz file, uncompressed, of these arrays under these keys: the same arrays give the same bytes.
 
     Parameters
     ----------
     arrays
         Plain numbers or booleans of any shape, by names such as ``normals``.
+    units
+        Their units by the same names; ``numpy.load(file)["normals.unit"].item()`` gives one back.
 
     Raises
     ------
@@ -99,4 +107,6 @@ def encode_npz(arrays: Mapping[str, Array]) -> bytes:
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
         for key in sorted(arrays):
             archive.writestr(zipfile.ZipInfo(f"{key}.npy", _EPOCH), encode_npy(arrays[key]))
+            if key in units:
+                archive.writestr(zipfile.ZipInfo(f"{key}{UNIT}.npy", _EPOCH), encode_text(units[key]))
     return packed.getvalue()

@@ -11,12 +11,12 @@ import numpy as np
 
 from visint import io
 from visint.arrays import Array
-from visint.fields import geometry
-from visint.fields.evidence import Evidence, known
+from visint.fields.evidence import Evidence
 from visint.results import pictures
 from visint.results.against import read_against
-from visint.results.provenance import Source, provenance
+from visint.results.provenance import Source, provenance, unit_of
 from visint.results.report import report
+from visint.results.solid import solid
 
 if TYPE_CHECKING:
     from visint.results.result import Result
@@ -47,7 +47,7 @@ def save(
 
 
 def files_of(result: Result) -> Files:
-    """(file name, bytes) of every output, its confidence, the evidence and the points; made one by one."""
+    """(file name, bytes) of every output, its confidence, the evidence, points and surface; made one by one."""
     writers = result.graph.catalog.writers()
     for name, value in result.outputs.items():
         kind = result.kinds[name]
@@ -56,13 +56,14 @@ def files_of(result: Result) -> Files:
         elif kind in _BY_KIND:
             yield from _BY_KIND[kind](name, value)
         elif isinstance(value, np.ndarray):
-            yield f"{name}.npz", io.encode_npz({name: value})
+            yield f"{name}.npz", io.encode_npz({name: value}, {name: unit_of(result, kind)})
     for name, value in result.confidence.items():
         if f"{name}_confidence" not in result.outputs:  # the graph may give it as an output of its own
             yield f"{name}_confidence.pfm", io.encode_pfm(value)
     if result.evidence or result.attribution:
-        yield "evidence.npz", io.encode_npz({**dict(_evidence(result.evidence)), **dict(_shares(result))})
-    yield from _points(result)
+        arrays = {**dict(_evidence(result.evidence)), **dict(_shares(result))}
+        yield "evidence.npz", io.encode_npz(arrays, dict(_units(result)))
+    yield from solid(result)
 
 
 def _pfm(name: str, value: Array) -> Files:
@@ -76,7 +77,7 @@ def _disparity(name: str, value: Array) -> Files:
 
 
 def _normals(name: str, value: Array) -> Files:
-    yield f"{name}.npz", io.encode_npz({name: value})
+    yield f"{name}.npz", io.encode_npz({name: value}, {name: "1"})
     yield f"{name}.png", io.encode_png(pictures.of_normals(value))
 
 
@@ -85,12 +86,12 @@ def _mask(name: str, value: Array) -> Files:
 
 
 def _boundary_kinds(name: str, value: Array) -> Files:
-    yield f"{name}.npz", io.encode_npz({name: value})
+    yield f"{name}.npz", io.encode_npz({name: value}, {name: "1"})
     yield f"{name}.png", io.encode_png(pictures.of_boundary_kinds(value))
 
 
 def _regions(name: str, value: Array) -> Files:
-    yield f"{name}.npz", io.encode_npz({name: value})
+    yield f"{name}.npz", io.encode_npz({name: value}, {name: "1"})
     yield f"{name}.png", io.encode_png(pictures.of_regions(value))
 
 
@@ -112,25 +113,17 @@ def _evidence(evidence: Mapping[str, Evidence]) -> Iterator[tuple[str, Array]]:
         yield f"{name}.reliability", one.reliability
 
 
+def _units(result: Result) -> Iterator[tuple[str, str]]:
+    """What value and sigma of each evidence are measured in."""
+    for name, one in result.evidence.items():
+        unit = unit_of(result, one.measures)
+        yield from ((f"{name}.{part}", unit) for part in (one.measures.lower(), "sigma"))
+
+
 def _shares(result: Result) -> Iterator[tuple[str, Array]]:
     """How much of each field each cue decided."""
     for name, weights in result.attribution.items():
         yield from ((f"{cue}.share_of_{name}", weight) for cue, weight in weights.items())
-
-
-def _points(result: Result) -> Files:
-    """The known points of the first depth map, with their colour and normals."""
-    camera = result.camera
-    depth = next((value for name, value in result.outputs.items() if result.kinds[name] == "Depth"), None)
-    if camera is None or depth is None or depth.shape != camera.size or not known(depth).any():
-        return
-    normals = next((value for name, value in result.outputs.items() if result.kinds[name] == "Normals"), None)
-    points = geometry.back_project(depth, camera)
-    beside = {"normals": normals, "colors": pictures.of_reference(result)}
-    fitting = {
-        name: one if one is not None and one.shape == points.shape else None for name, one in beside.items()
-    }
-    yield "points.ply", io.encode_ply(points, unit=camera.unit, **fitting)
 
 
 def _profile(result: Result) -> dict[str, Any]:

@@ -28,6 +28,7 @@ __all__ = [
     "modules",
     "parameters",
     "provenance",
+    "unit_of",
 ]
 
 ABSENT = "absent"
@@ -119,12 +120,19 @@ def _output(result: Result, name: str) -> dict[str, Any]:
     value = result.outputs[name]
     told: dict[str, Any] = {"kind": result.kinds[name], "sha256": _digest(value)}
     if isinstance(value, np.ndarray):
-        told["shape"] = list(value.shape)
+        told |= {"shape": list(value.shape), "unit": unit_of(result, result.kinds[name])}
     elif isinstance(value, float | int | str | bool):
         told["value"] = value
     if name in result.writers:
         told["last_written_by"] = result.writers[name]._asdict()
     return told
+
+
+def unit_of(result: Result, kind: str) -> str:
+    """What an array of ``kind`` is measured in; lengths in the camera's unit, ``relative`` without one."""
+    found = result.graph.catalog.kind(kind)
+    unit = found.array.unit if found and found.array else ""
+    return unit.replace("baseline", result.camera.unit if result.camera else "relative")
 
 
 def _digest(value: Any) -> str:
