@@ -26,7 +26,8 @@ __all__ = ["EXAMPLES", "command"]
 EXAMPLES = (
     "Examples: visint run stereo_sgm --left l.png --right r.png --calib calib.txt --out out;  "
     "visint run mine.yaml --in image=a.png --out out --set match.speckle=50;  "
-    "visint run out/run.json --out again"
+    "visint run out/run.json --out again;  "
+    "visint run stereo --left l.png --right r.png --calib calib.txt --out other --against out"
 )
 
 
@@ -62,17 +63,22 @@ def command(  # noqa: PLR0913, PLR0917 - the options of a command line are many,
     seed: Annotated[int | None, typer.Option(help="Seed of random numbers.  [default: 0]")] = None,
     threads: Annotated[int, typer.Option(min=1, help="Nodes that may run side by side.")] = 1,
     trace: Annotated[str, typer.Option(help="A file for the timeline, in Chrome's trace format.")] = "",
+    rerun: Annotated[
+        str, typer.Option(help="A file for the Rerun viewer: maps by level and turn; needs the extra.")
+    ] = "",
+    against: Annotated[
+        str, typer.Option(help="The folder of another run; the report compares this one with it.")
+    ] = "",
     force: Annotated[bool, typer.Option("--force", help="Take a folder that holds other things.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="What was written, as JSON on stdout.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Say nothing but errors.")] = False,
     verbose: Annotated[bool, typer.Option("-v", "--verbose", help="Say what each node took.")] = False,
 ) -> None:
     """Run a graph on files; depth, normals, report and record go into a folder."""
-    from visint import io
     from visint.cli.again import former
+    from visint.cli.beside import Beside
     from visint.cli.remarks import remarks
     from visint.engine import Options
-    from visint.engine.profile import Profile
     from visint.graph import alter, load
 
     typed = Given(left, right, calib, light, light_at, disparity_range, tuple(in_ or ()), gamma)
@@ -81,35 +87,36 @@ def command(  # noqa: PLR0913, PLR0917 - the options of a command line are many,
     bound = alter(bound, settings=settings(set_ or []), without=without or (), control=control or None)
     given = typed.sources(bound)
     sources = before.sources(given) if before else given
-    _refuse_now(out, trace, force=force)
-    profile = Profile()
+    beside = Beside(bound, trace, rerun)
+    _refuse_now(out, beside.paths, against, force=force)
     options = Options(
         seed=seed if seed is not None else before.seed if before else 0,
         threads=threads,
         stop_after=stop_after or (before.stop_after if before else "") or None,
         start=_start(bound, start, before),
-        observers=(profile,) if trace else (),
+        observers=beside.observers,
         attribution=before is None or before.attribution,
     )
     said: list[tuple[str, str]] = []
     result = _run(bound, sources, options, said, quiet=quiet)
     result.warnings[:0] = remarks(result, said, before.changed(result, given) if before else ())
     with undoable():
-        files = result.save(out, force=force, sources=sources)
-        if trace:
-            io.write_text(trace, json.dumps(profile.chrome()))
+        files = result.save(out, force=force, sources=sources, against=against or None)
+        beside.write()
     _tell(result, out, files, as_json=as_json, quiet=quiet, verbose=verbose)
 
 
-def _refuse_now(out: Path, trace: str, *, force: bool) -> None:
-    """What cannot be written is refused before the work, not after it."""
+def _refuse_now(out: Path, others: tuple[str, ...], against: str, *, force: bool) -> None:
+    """What cannot be written, and another run that cannot be read, is refused before the work."""
     from visint import io
+    from visint.results.against import read_against
 
+    if against:
+        read_against(against)
     io.OutputFolder(out, force=force)
     place = out.absolute()
     _writable(next(folder for folder in (place, *place.parents) if folder.exists()))
-    home = Path(trace).absolute().parent
-    if trace and home != place:
+    for home in {Path(path).absolute().parent for path in others} - {place}:
         _writable(home)
 
 

@@ -10,7 +10,7 @@ from visint import io
 from visint.arrays import Array
 from visint.results.report.markup import Markup, element
 
-__all__ = ["embedded"]
+__all__ = ["embedded", "reduced"]
 
 _LOSSLESS = 48_000
 _QUALITY = 88
@@ -30,12 +30,12 @@ def embedded(picture: Array, alt: str, side: int, name: str | None = None) -> Ma
     name
         Its ``id``, where the script needs to find it.
     """
-    reduced = _reduced(picture, side)
-    height, width = reduced.shape[:2]
+    small = reduced(picture, side)
+    height, width = small.shape[:2]
     return element(
         "img",
         id=name,
-        src=_data(reduced),
+        src=_data(small),
         alt=alt,
         width=width,
         height=height,
@@ -43,7 +43,8 @@ def embedded(picture: Array, alt: str, side: int, name: str | None = None) -> Ma
     )
 
 
-def _reduced(picture: Array, side: int) -> Array:
+def reduced(picture: Array, side: int) -> Array:
+    """``picture`` with its longest side at most ``side`` pixels, averaged; as it is if it is no larger."""
     import cv2
 
     height, width = picture.shape[:2]

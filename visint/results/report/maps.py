@@ -16,7 +16,7 @@ from visint.results.report.legends import color_bar, grey_bar, key, normals_key
 from visint.results.report.markup import Markup, element
 from visint.results.report.numbers import count, number, percent, with_unit
 
-__all__ = ["Map", "figure", "is_map", "over"]
+__all__ = ["Map", "figure", "is_map", "over", "picture"]
 
 _LINE = (255, 106, 26)
 """The colour of boundaries over a photograph: seldom one of its own, and told from both black and white."""
@@ -56,6 +56,11 @@ def over(shown: Map, side: int) -> Markup:
     """
     view = _OVER.get(shown.kind, _view)(shown)
     return _figure(shown, view, side, data_over="fade" if shown.kind in _OVER else "swipe")
+
+
+def picture(shown: Map) -> Array:
+    """The picture of a map alone, uint8 (H, W, 3)."""
+    return _view(shown).picture
 
 
 def _view(shown: Map) -> _View:
