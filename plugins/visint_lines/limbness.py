@@ -1,0 +1,130 @@
+"""Limbness: does a surface turn away from the viewer towards its boundary, as at a limb?"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from visint.arrays import Array
+
+__all__ = ["LEAST", "limb_points", "limb_runs"]
+
+LEAST = 6
+"""Samples below which nothing is said."""
+FIRST = 3
+"""Samples next to the boundary whose mean is the starting angle."""
+DROP = np.radians(3.0)
+"""By how much the angle falls over the samples of a limb, whose radius may be some hundred pixels."""
+BENT = 0.7
+"""Part of the least starting angle that the samples themselves must have."""
+GRAIN = np.radians(1.0)
+"""Angles are rounded to this before they are ranked: ranks of rounding errors are noise."""
+HIT, FALSE = 0.9, 0.04
+"""Share of the points of a limb, and of other lines, that pass both tests."""
+CHANGE = 10.0
+"""What it costs, in nats, that a line changes between limb and none: about five points' worth."""
+
+
+def limb_points(slant: Array, size: float, start: float) -> tuple[Array, Array]:
+    """(passed, asked), bool (...): whether angles (..., M), by distance from the boundary, pass both tests of
+    section 4.1.3, and whether there were :data:`LEAST` of them, so that anything could be said.
+
+    The trend: Spearman's rank correlation S of angle and distance is negative, R = S √((m−2)/(1−S²)) below the
+    ``size`` quantile of Student's t, one-sided; and from end to end the angle falls by :data:`DROP` at least,
+    which the trend of a plane in smoothed noise does not. The start: the mean of the first angles is above
+    ``start`` (radians), or it is where the circle through them meets the boundary: near a thin limb the surface
+    has turned to the viewer after few pixels. Ties have mean ranks; NaN is no sample.
+    """
+    known = np.isfinite(slant)
+    count = known.sum(axis=-1)
+    angle = np.where(known, np.rint(slant / GRAIN), 0)
+    distance = np.broadcast_to(np.arange(slant.shape[-1], dtype=np.float64), slant.shape)
+    trend = _correlation(_ranks(angle, known), _ranks(distance, known), known)
+    rank = known.cumsum(axis=-1)
+    begin = _mean(slant, known & (rank <= FIRST))
+    end = _mean(slant, known & (rank > count[..., None] - FIRST))
+    begins = np.maximum(begin, np.where(begin > BENT * start, _at_boundary(slant, known), 0))
+    critical = np.array([_critical(m, size) for m in range(slant.shape[-1] + 1)])
+    asked = count >= LEAST
+    return (trend < critical[count]) & (begin - end > DROP) & (begins > start) & asked, asked
+
+
+def _mean(value: Array, where: Array) -> Array:
+    return np.asarray(np.where(where, value, 0).sum(axis=-1) / np.maximum(where.sum(axis=-1), 1))
+
+
+def _at_boundary(slant: Array, known: Array) -> Array:
+    """The angle at the boundary itself of a surface as round as the samples: there cos² is linear in distance."""
+    near = known & (known.cumsum(axis=-1) <= 2 * FIRST)
+    weight, away = near.astype(np.float64), np.arange(1.0, slant.shape[-1] + 1)
+    squared = np.where(near, np.cos(slant) ** 2, 0)
+    total = np.maximum(weight.sum(axis=-1), 1)
+    mean_x, mean_y = (weight * away).sum(axis=-1) / total, squared.sum(axis=-1) / total
+    off = (away - mean_x[..., None]) * weight
+    slope = (off * squared).sum(axis=-1) / np.maximum((off**2).sum(axis=-1), 1e-9)
+    return np.asarray(np.arccos(np.sqrt(np.clip(mean_y - slope * mean_x, 0, 1))))
+
+
+def _ranks(value: Array, known: Array) -> Array:
+    """Mean ranks along the last axis among the known."""
+    one, two = value[..., :, None], value[..., None, :]
+    below = ((two < one) + 0.5 * (two == one)) * known[..., None, :]
+    return np.asarray(below.sum(axis=-1))
+
+
+def _correlation(one: Array, two: Array, known: Array) -> Array:
+    weight = known.astype(np.float64)
+    total = np.maximum(weight.sum(axis=-1, keepdims=True), 1)
+    a = (one - (one * weight).sum(axis=-1, keepdims=True) / total) * weight
+    b = (two - (two * weight).sum(axis=-1, keepdims=True) / total) * weight
+    scale = np.sqrt((a * a).sum(axis=-1) * (b * b).sum(axis=-1))
+    return np.asarray((a * b).sum(axis=-1) / np.where(scale > 0, scale, 1))
+
+
+@cache
+def _critical(count: int, size: float) -> float:
+    """The S whose R is the ``size`` quantile of t with ``count`` − 2 degrees of freedom."""
+    from scipy.special import stdtrit
+
+    if count < LEAST:
+        return -2.0
+    t = float(stdtrit(count - 2, size))
+    return t / (count - 2 + t * t) ** 0.5
+
+
+def limb_runs(passed: Array, asked: Array, closed: bool) -> list[tuple[int, int, bool]]:
+    """(first, behind the last, whether limb) of the runs into which points fall, bool (N,), along a line.
+
+    Points that were not asked go with their neighbours. The cheapest explanation by limb and other stretches, each change having its price. On a closed line the
+    first run may begin anywhere; then its last index lies beyond N.
+    """
+    count = len(passed)
+    if count == 0:
+        return []
+    cost = -np.log(np.where(passed[:, None], [FALSE, HIT], [1 - FALSE, 1 - HIT])) * asked[:, None]
+    states = _cheapest(np.tile(cost, (3, 1)))[count : 2 * count] if closed else _cheapest(cost)
+    cuts = np.flatnonzero(np.diff(states.astype(np.int8))) + 1
+    if not closed or not len(cuts):
+        edges = [0, *cuts.tolist(), count]
+        return [(a, b, bool(states[a])) for a, b in zip(edges, edges[1:], strict=False)]
+    if states[0] == states[-1]:  # the run across the seam is one
+        edges = [*cuts.tolist(), int(cuts[0]) + count]
+    else:
+        edges = [0, *cuts.tolist(), count]
+    return [(a, b, bool(states[a % count])) for a, b in zip(edges, edges[1:], strict=False)]
+
+
+def _cheapest(cost: Array) -> Array:
+    """bool (N,): the states with the least sum of cost (N, 2) and changes (Viterbi)."""
+    total, back = cost[0].copy(), np.zeros((len(cost), 2), np.int64)
+    for i in range(1, len(cost)):
+        switched = total[::-1] + CHANGE
+        back[i] = np.where(switched < total, [1, 0], [0, 1])
+        total = np.minimum(total, switched) + cost[i]
+    states = np.empty(len(cost), bool)
+    state = int(total.argmin())
+    for i in range(len(cost) - 1, -1, -1):
+        states[i] = state == 1
+        state = int(back[i, state])
+    return states

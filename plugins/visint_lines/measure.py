@@ -1,0 +1,161 @@
+"""``lines.features``: what depth says of each arc, arcs cut where a limb begins or ends."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import radians
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from pydantic import Field
+
+from visint.arrays import Array, Confidence, Depth, Regions, read_only
+from visint.fields import Camera
+from visint.module import Context, Module, Params, Ports
+from visint_lines.diagram import Diagram, Measures
+from visint_lines.limbness import limb_points
+from visint_lines.profile import Profile, profile
+from visint_lines.sections import Sections, cut, surfaces
+from visint_lines.splitting import split
+
+__all__ = ["Features", "FeaturesParams"]
+
+OFF = 0.6
+"""Pixels by which a line lies off its place: on a steep face that makes a gap."""
+
+
+class FeaturesParams(Params):
+    """Parameters of ``lines.features``.
+
+    Parameters
+    ----------
+    across
+        Pixels of the level to either side of a line within which depth is extrapolated to it. More averages more
+        noise out and believes longer that faces are parabolas.
+    window
+        Pixels of the level to each side of the square in which a plane is fitted for a normal.
+    samples
+        Normals in a row away from the line that limbness is told from. More is surer, and needs wider surfaces.
+    size
+        Size of the rank test: the share of trendless points that pass it.
+    start
+        Least starting angle, radians, of a limb. More refuses rounded edges, and limbs in coarse depth.
+    """
+
+    across: int = Field(default=8, ge=3, le=64)
+    window: int = Field(default=2, ge=1, le=16)
+    samples: int = Field(default=10, ge=6, le=64)
+    size: float = Field(default=0.01, gt=0, lt=0.5)
+    start: float = Field(default=radians(68), ge=0)
+
+
+class FeaturesInputs(Ports):
+    """A diagram, the regions it was parsed from (as ``lines.parse`` gives them) and depth.
+
+    Without a camera depth counts as that of an uncalibrated one: angles are right up to a stretch.
+    """
+
+    diagram: Diagram
+    regions: Regions[Array, "H W"]
+    depth: Depth[Array, "H W"]
+    camera: Camera | None = None
+
+
+class FeaturesOutputs(Ports):
+    """The diagram with the features of Table 4.2 in its arcs, cut at ends of limbs; limbness along its lines."""
+
+    diagram: Diagram
+    limbness: Confidence[Array, "H W"]
+
+
+class Features(Module[FeaturesParams, FeaturesInputs, FeaturesOutputs]):
+    """Depth gap, dihedral angle and limbness of each arc, from depth on both sides extrapolated to it.
+
+    Table 4.2 with the gap extrapolated: each side is a parabola of its own in 1/Z with one bend for both, so
+    that a slanted face has no gap at its crease and a mark on a ball no angle. Limbness is section 4.1.3's: the
+    share of points where angles to the line of sight fall, by Spearman's test, and start steep. Where that
+    changes along an arc, a limb begins or ends, and there the arc is cut.
+
+    Assumes surfaces that are smooth within their regions. Where depth is known on one side alone, that side
+    counts as the nearer one.
+    """
+
+    name = "features"
+    assumptions: ClassVar[tuple[str, ...]] = ("smoothness", "opacity")
+
+    def run(self, inputs: FeaturesInputs, ctx: Context) -> FeaturesOutputs:
+        """The measured diagram."""
+        p = self.params
+        camera = inputs.camera or Camera.uncalibrated(inputs.regions.shape[1], inputs.regions.shape[0])
+        seen = surfaces(inputs.depth, inputs.regions, camera, p.window)
+        ctx.check()
+        sections = cut(inputs.diagram, seen, max(p.across, p.samples))
+        ctx.check()
+        found = _observed(sections, p)
+        diagram, owner = split(inputs.diagram, sections.arc, sections.index, found.passed, found.asked)
+        diagram = replace(
+            diagram,
+            arcs=tuple(
+                replace(arc, measures=_summed(found, owner == number))
+                for number, arc in enumerate(diagram.arcs)
+            ),
+        )
+        return FeaturesOutputs(diagram=diagram, limbness=_painted(diagram))
+
+
+class _Observed(NamedTuple):
+    """Section by section: the profile; whether either side (N, 2) is a limb's and can tell; whether any."""
+
+    profile: Profile
+    limb: Array
+    told: Array
+    passed: Array
+    asked: Array
+
+
+def _observed(sections: Sections, p: FeaturesParams) -> _Observed:
+    limb, asked = limb_points(sections.slant[:, :, : p.samples], p.size, p.start)
+    told = profile(sections.depth[:, :, : p.across], sections.offset[: p.across])
+    behind = np.stack([told.gap < 0, told.gap > 0], axis=-1) & told.seen[:, None]
+    limb &= ~behind  # a limb hides what is behind it
+    near = np.where(told.seen, asked[np.arange(len(asked)), (told.gap < 0).astype(int)], asked.any(axis=1))
+    return _Observed(told, limb, asked, limb.any(axis=1), near)
+
+
+def _summed(found: _Observed, mine: Array) -> Measures:
+    """The features of one arc from its sections: medians, and how sure they are."""
+    told, count = found.profile, int(mine.sum())
+    if count == 0:
+        return Measures()
+    left, right = (
+        float(passed / max(asked, 1))
+        for passed, asked in zip(found.limb[mine].sum(axis=0), found.told[mine].sum(axis=0), strict=True)
+    )
+    both = mine & told.seen
+    seen = float(both.sum() / count)
+    if both.sum() >= max(2, 0.3 * count):
+        gap, spread = _middle(told.gap[both])
+        spread = float(np.hypot(spread, OFF * np.median(told.steepness[both])))
+        bend, spread_bend = _middle(told.dihedral[both])
+        return Measures(gap, spread, bend, spread_bend, left, right, seen)
+    one = mine & (told.alone != 0)
+    if one.sum() >= 0.5 * count:  # behind it nothing is known
+        return Measures(
+            float(np.sign(np.median(told.alone[one]))) * np.inf, 1.0, 0.0, np.inf, left, right, seen
+        )
+    return Measures(left=left, right=right, seen=seen)
+
+
+def _middle(value: Array) -> tuple[float, float]:
+    """(median, its standard error); neighbouring sections share pixels, so half of them count."""
+    middle = float(np.median(value))
+    spread = 1.4826 * float(np.median(np.abs(value - middle)))
+    return middle, 1.25 * spread / max(1.0, len(value) / 2) ** 0.5
+
+
+def _painted(diagram: Diagram) -> Array:
+    """float32 (H, W): the limbness of the arc through each pixel, 0 elsewhere."""
+    from visint_lines.painting import along
+
+    limbness = np.array([arc.measures.limbness if arc.measures else 0.0 for arc in diagram.arcs])
+    return read_only(along(diagram, limbness).astype(np.float32))

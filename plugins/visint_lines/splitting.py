@@ -1,0 +1,86 @@
+"""Cutting arcs where a limb begins or ends."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from visint.arrays import Array, read_only
+from visint_lines.curves import departure
+from visint_lines.diagram import LOOP, Arc, Diagram, assembled
+from visint_lines.limbness import limb_runs
+
+__all__ = ["SHORTEST", "split"]
+
+SHORTEST = 12
+"""Points that a piece between two cuts has at least."""
+
+
+def split(diagram: Diagram, arc_of: Array, index: Array, passed: Array, asked: Array) -> tuple[Diagram, Array]:
+    """The diagram with its arcs cut between limb and no limb, and the new arc of each section.
+
+    Parameters
+    ----------
+    arc_of, index
+        int (N,): arc of each section, and the point it goes through.
+    passed, asked
+        bool (N,): whether the section is a limb's, and whether it can tell.
+    """
+    spots = [(j.x, j.y) for j in diagram.junctions]
+    frame = [j.frame for j in diagram.junctions]
+    arcs: list[Arc] = []
+    owner = np.empty(len(arc_of), dtype=np.int64)
+    for number, arc in enumerate(diagram.arcs):
+        mine = np.flatnonzero(arc_of == number)
+        cuts = _cuts(arc, index[mine], limb_runs(passed[mine], asked[mine], arc.closed))
+        owner[mine] = len(arcs) + _piece_of(index[mine], cuts, arc.closed)
+        arcs += _between(arc, cuts, len(spots))
+        spots += [(float(x), float(y)) for x, y in arc.points[cuts]]
+        frame += [False] * len(cuts)
+    angles = [(0.0, 0.0) if a.closed else (departure(a.points), departure(a.points[::-1])) for a in arcs]
+    places = np.array(spots, dtype=np.float64).reshape(-1, 2)
+    return assembled(diagram.size, places, arcs, angles, np.array(frame, dtype=bool)), owner
+
+
+def _cuts(arc: Arc, index: Array, runs: list[tuple[int, int, bool]]) -> list[int]:
+    """Points at which the arc is cut, ascending; a closed one has none or at least two."""
+    if len(runs) < 2:
+        return []
+    count = len(index)
+    starts = runs if arc.closed else runs[1:]
+    at = sorted({int(index[first % count]) for first, _, _ in starts})
+    last = len(arc.points) - 1
+    if arc.closed:
+        gaps = np.diff([*at, at[0] + last])
+        return at if len(at) > 1 and gaps.min() >= SHORTEST else []
+    kept: list[int] = []
+    for cut in at:
+        if cut - (kept[-1] if kept else 0) >= SHORTEST and last - cut >= SHORTEST:
+            kept.append(cut)
+    return kept
+
+
+def _piece_of(index: Array, cuts: list[int], closed: bool) -> Array:
+    """Which piece each point lies in."""
+    piece = np.searchsorted(np.array(cuts, dtype=np.int64), index, side="right")
+    return np.asarray((piece - 1) % len(cuts) if closed and cuts else piece)
+
+
+def _between(arc: Arc, cuts: list[int], first: int) -> list[Arc]:
+    """The pieces of ``arc``; the new junctions are numbered from ``first``."""
+    if not cuts:
+        return [arc]
+    new = list(range(first, first + len(cuts)))
+    if arc.start == LOOP:
+        ring = arc.points[:-1]
+        around = np.concatenate([ring[cuts[0] :], ring[: cuts[0] + 1]])
+        edges = [cut - cuts[0] for cut in cuts] + [len(around) - 1]
+        ends, points = [*new, new[0]], around
+    else:
+        edges, points = [0, *cuts, len(arc.points) - 1], arc.points
+        ends = [arc.start, *new, arc.end]
+    return [
+        replace(arc, start=a, end=b, points=read_only(points[i : j + 1].copy()))
+        for a, b, i, j in zip(ends, ends[1:], edges, edges[1:], strict=False)
+    ]
