@@ -17,7 +17,12 @@ def visint_modules() -> list[Any]:
     from visint_grouping.diffuse import Diffuse
     from visint_grouping.edges_of import EdgesOf
     from visint_grouping.perceptual import Perceptual
+    from visint_grouping.planes.guide import Guide
+    from visint_grouping.planes.mend import Mend
+    from visint_grouping.planes.region_planes import RegionPlanes
     from visint_grouping.split_merge import SplitMerge
+    from visint_grouping.superpixels import Superpixels
     from visint_grouping.voronoi import Voronoi
 
-    return [Canny, DepthEdges, Diffuse, EdgesOf, Perceptual, SplitMerge, Voronoi]
+    found = [Canny, DepthEdges, Diffuse, EdgesOf, Guide, Mend, Perceptual]
+    return [*found, RegionPlanes, SplitMerge, Superpixels, Voronoi]

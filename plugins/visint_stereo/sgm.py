@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field
 
-from visint.arrays import Array, Image, Mask
+from visint.arrays import Array, Disparity, Image, Mask
 from visint.fields import Camera, DisparityEvidence
 from visint.module import Context, Module, Params, Ports
 from visint_stereo.semiglobal.brightness import graded
@@ -14,7 +14,7 @@ from visint_stereo.semiglobal.match import Settings
 from visint_stereo.semiglobal.reliability import TrainedOn
 from visint_stereo.semiglobal.resolution import matched_within
 from visint_stereo.semiglobal.search_range import estimated, within
-from visint_stereo.semiglobal.volume import Levels, Penalties
+from visint_stereo.semiglobal.volume import Levels, Penalties, Prior
 
 __all__ = ["SemiGlobal"]
 
@@ -57,11 +57,16 @@ class SemiGlobalParams(Params):
 
 
 class SemiGlobalInputs(Ports):
-    """A rectified pair; the camera gives the search range."""
+    """A rectified pair; the camera gives the search range.
+
+    ``prior``: a surface to follow, such as ``grouping.guide`` gives. Its reliability says how strongly: 0 not at
+    all, 1 with up to 12 bits a pixel; along its slopes a step of up to 2 px costs nothing.
+    """
 
     left: Image[Array, "H W"]
     right: Image[Array, "H W"]
     camera: Camera | None = None
+    prior: DisparityEvidence | None = None
 
 
 class SemiGlobalOutputs(Ports):
@@ -69,11 +74,13 @@ class SemiGlobalOutputs(Ports):
 
     ``consistent``: both views agree and the pixel is no speckle. ``occluded``: the left view alone sees it.
     Elsewhere the disparity is filled along the paths, with the low reliability that such values deserve.
+    ``right_disparity``: of the right view, where both agree; NaN elsewhere.
     """
 
     disparity: DisparityEvidence
     consistent: Mask[Array, "H W"]
     occluded: Mask[Array, "H W"]
+    right_disparity: Disparity[Array, "H W"]
 
 
 class SemiGlobal(Module[SemiGlobalParams, SemiGlobalInputs, SemiGlobalOutputs]):
@@ -99,12 +106,15 @@ class SemiGlobal(Module[SemiGlobalParams, SemiGlobalInputs, SemiGlobalOutputs]):
         ctx.measure("blur", blur)
         ctx.measure("first disparity", levels.first)
         ctx.measure("last disparity", levels.last)
-        match = matched_within(left, right, levels, self.params.settings(ctx.scale), ctx.check)
+        prior = None if inputs.prior is None else Prior.of(inputs.prior.value, inputs.prior.reliability)
+        settings = self.params.settings(ctx.scale)
+        match = matched_within(left, right, levels, settings, ctx.check, prior=prior)
         known = np.isfinite(inputs.left)
         return SemiGlobalOutputs(
             disparity=DisparityEvidence.of(match.disparity, match.sigma, known * match.trust),
             consistent=known & match.consistent,
             occluded=match.hidden,
+            right_disparity=match.right,
         )
 
     def _levels(self, camera: Camera | None, left: Array, right: Array, ctx: Context) -> Levels:

@@ -106,6 +106,23 @@ def hamming(left, mirrored, first, base, neutral, cost):
                 cost[y, x, k] = _popcount(word ^ mirrored[y, U(U(start + begin) + (k - U(begin)))])
 
 
+@njit(cache=True, nogil=True)
+def lean_on(cost, value, weight, first, base):
+    """Adds to ``cost`` uint8 (H, W, D) what a level costs for lying off a prior: 4 a px up to 12, by ``weight``.
+
+    value, weight float32 (H, W); where weight is 0 nothing is added.
+    """
+    rows, columns, depth = cost.shape
+    for y in range(rows):
+        for x in range(columns):
+            if weight[y, x] > 0:
+                low = np.float32(first + base[y, x])
+                for k in range(depth):
+                    off = np.float32(4) * abs(value[y, x] - low - np.float32(k))
+                    more = weight[y, x] * min(off, np.float32(12)) + np.float32(0.5)
+                    cost[y, x, k] = _add(cost[y, x, k], np.uint8(more))
+
+
 @njit(cache=True, nogil=True, inline="always")
 def _walk(paths, before, here, floor, cost, at, total, depth, small, large):
     """One pixel of one path: its costs into ``paths[here:]``, added to ``total``; returns their minimum.
@@ -128,11 +145,13 @@ def _walk(paths, before, here, floor, cost, at, total, depth, small, large):
 
 
 @njit(cache=True, nogil=True)
-def aggregate(cost, shape, base, pad, brightness, small, steep, total, way):
+def aggregate(cost, shape, base, lean, pad, brightness, small, steep, total, way):
     """Four of the eight paths: from the left and from above (``way`` 1), or from the right and below (-1).
 
     Parameters: cost uint8 flat; base int32 (H, W) as in :func:`hamming` (neighbours' levels are shifted to
-    stand for the same disparity, by at most ``pad``: D if base varies, 0 if it is 0); brightness uint8 (H, W);
+    stand for the same disparity, by at most ``pad``: D if base varies, 0 if it is 0); lean int32 (H, W): whole
+    levels of a surface that is followed without a penalty where it steps by at most 2 (SGM-P: Scharstein, Taniai
+    and Sinha 2017, doi:10.1109/3DV.2017.00034), which wants a ``pad`` of 2; brightness uint8 (H, W);
     ``small`` P1; ``steep`` uint8 (256,) P2 by brightness step; total uint16 flat, added to.
     """
     rows, columns, wide = shape
@@ -163,7 +182,11 @@ def aggregate(cost, shape, base, pad, brightness, small, steep, total, way):
                         least = _least(least, value)
                         total[at + k] = _sum16(total[at + k], value)
                 else:
-                    shift = min(max(base[y, x] - base[py, px], -pad), pad)
+                    shift = base[y, x] - base[py, px]
+                    climb = lean[y, x] - lean[py, px]
+                    if abs(climb) <= 2:
+                        shift -= climb
+                    shift = min(max(shift, -pad), pad)
                     before = U((half * 4 + path) * (columns + 2) + columns - past) * stride + U(pad + shift)
                     step = abs(np.int64(brightness[y, x]) - np.int64(brightness[py, px]))
                     floor = floors[half, path, columns - past]

@@ -6,7 +6,7 @@ import numpy as np
 
 from visint.arrays import Array
 
-__all__ = ["agreed", "occluded", "without_speckles"]
+__all__ = ["agreed", "backed", "occluded", "without_speckles"]
 
 
 def _across(disparity: Array) -> tuple[Array, Array]:
@@ -21,6 +21,15 @@ def agreed(disparity: Array, right: Array, tolerance: float) -> Array:
     column, inside = _across(disparity)
     back = np.take_along_axis(right, column, axis=1)
     return np.asarray(inside & (np.abs(disparity - back) <= tolerance))
+
+
+def backed(right: Array, trusted: Array) -> Array:
+    """Bool (H, W): right pixels whose own match in the left view is trusted; right: int32 (H, W), px."""
+    columns = right.shape[1]
+    column = np.arange(columns, dtype=np.int32) + right
+    inside = (column >= 0) & (column < columns)
+    found = np.take_along_axis(trusted, np.clip(column, 0, columns - 1), axis=1)
+    return np.asarray(inside & found)
 
 
 def occluded(disparity: Array, right: Array, trusted: Array) -> Array:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from visint.arrays import Array
+from visint_stereo.semiglobal.consistency import backed
 from visint_stereo.semiglobal.volume import Check, Levels, Penalties, path_costs
 
 __all__ = ["evened", "filled"]
@@ -34,21 +35,11 @@ def filled(
         return np.full_like(disparity, np.nan)
     base = levels.lowest(disparity.shape)
     cost = np.empty((*disparity.shape, levels.count), dtype=np.uint8)
-    backed = _backed(right, trusted)
-    _kernels.filling_costs(disparity, trusted, right, backed, levels.first, base, cost)
+    _kernels.filling_costs(disparity, trusted, right, backed(right, trusted), levels.first, base, cost)
     total = path_costs(cost, levels, grades, PENALTIES, check)
     spread = np.empty_like(disparity)
     _kernels.cheapest(total.reshape(-1), cost.shape, levels.first, base, spread)
     return np.where(trusted, disparity, spread)
-
-
-def _backed(right: Array, trusted: Array) -> Array:
-    """Bool (H, W): right pixels whose own match in the left view is trusted."""
-    columns = right.shape[1]
-    column = np.arange(columns, dtype=np.int32) + right
-    inside = (column >= 0) & (column < columns)
-    found = np.take_along_axis(trusted, np.clip(column, 0, columns - 1), axis=1)
-    return np.asarray(inside & found)
 
 
 def evened(disparity: Array) -> Array:

@@ -8,7 +8,7 @@ import numpy as np
 
 from visint.arrays import Array
 from visint_stereo.semiglobal.brightness import graded
-from visint_stereo.semiglobal.consistency import agreed, occluded, without_speckles
+from visint_stereo.semiglobal.consistency import agreed, backed, occluded, without_speckles
 from visint_stereo.semiglobal.fill import evened, filled
 from visint_stereo.semiglobal.refine import refined
 from visint_stereo.semiglobal.reliability import TrainedOn, contrast, reliability, signs
@@ -16,7 +16,9 @@ from visint_stereo.semiglobal.volume import (
     Check,
     Levels,
     Penalties,
+    Prior,
     Volume,
+    lean_on,
     census,
     matching_costs,
     path_costs,
@@ -44,7 +46,8 @@ class Settings:
 @dataclass(frozen=True, slots=True)
 class Match:
     """Of the left view, (H, W) each: ``disparity`` and ``sigma`` in px and ``trust`` in [0, 1], float32;
-    ``consistent`` (both views agree) and ``hidden`` (from the right view), bool.
+    ``consistent`` (both views agree) and ``hidden`` (from the right view), bool. Of the right view: ``right``,
+    float32, px, its disparity where both agree, else NaN.
     """
 
     disparity: Array
@@ -52,12 +55,15 @@ class Match:
     trust: Array
     consistent: Array
     hidden: Array
+    right: Array
 
 
-def matched(left: Array, right: Array, levels: Levels, settings: Settings, check: Check) -> Match:
-    """The match of two linear float32 views (H, W) among ``levels``."""
+def matched(
+    left: Array, right: Array, levels: Levels, settings: Settings, check: Check, prior: Prior | None = None
+) -> Match:
+    """The match of two linear float32 views (H, W) among ``levels``, along ``prior`` if there is one."""
     here, there = graded(left), graded(right)
-    won = _won(here, there, levels, settings.penalties, check)
+    won = _won((here, there), levels, settings.penalties, check, prior)
     check()
     seen = np.isfinite(left) & (contrast(here) > 0)
     trusted = seen & agreed(won.disparity, won.right, settings.tolerance)
@@ -72,11 +78,17 @@ def matched(left: Array, right: Array, levels: Levels, settings: Settings, check
         np.where(seen, trust, np.minimum(trust, np.float32(FLAT))),
         trusted,
         occluded(won.disparity, won.right, trusted),
+        np.where(backed(won.right, trusted), won.right, np.float32(np.nan)).astype(np.float32),
     )
 
 
-def _won(here: Array, there: Array, levels: Levels, penalties: Penalties, check: Check) -> Winners:
+def _won(
+    grades: tuple[Array, Array], levels: Levels, penalties: Penalties, check: Check, prior: Prior | None
+) -> Winners:
     """The winners; the volumes they come from are gone when this returns."""
+    here, there = grades
     cost = matching_costs(census(here), census(there), levels, penalties.outside)
+    if prior is not None:
+        lean_on(cost, prior, levels)
     check()
-    return winners(Volume(levels, path_costs(cost, levels, here, penalties, check)))
+    return winners(Volume(levels, path_costs(cost, levels, here, penalties, check, prior)))

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from visint.arrays import Array
+from visint.fields.resampling import block_mean
 
-__all__ = ["Levels", "Penalties", "Volume", "census", "matching_costs", "path_costs"]
+__all__ = ["Levels", "Penalties", "Prior", "Volume", "census", "lean_on", "matching_costs", "path_costs"]
 
 Check = Callable[[], None]
 
@@ -69,6 +70,39 @@ class Penalties:
 
 
 @dataclass(frozen=True, slots=True)
+class Prior:
+    """A surface to follow: ``value`` float32 (H, W), px; ``weight`` float32 (H, W) in [0, 1].
+
+    Where it is known (``there``, bool) paths climb with it at no cost; its weight times 4 bits a px, at most 12,
+    is what a level costs that lies off it.
+    """
+
+    value: Array
+    weight: Array
+    there: Array
+
+    @classmethod
+    def of(cls, value: Array, weight: Array) -> Prior:
+        """From a surface that is NaN where unknown, float32 (H, W), and its weight."""
+        there = np.isfinite(value)
+        return cls(np.where(there, value, np.float32(0)), weight, there)
+
+    def rows(self, part: slice) -> Prior:
+        """Its rows of a strip."""
+        return Prior(self.value[part], self.weight[part], self.there[part])
+
+    def halved(self) -> Prior:
+        """At half the size, in pixels of that size; unknown where any of the four is."""
+        value = np.where(self.there, self.value, np.float32(np.nan))
+        return Prior.of(block_mean(value) / 2, block_mean(self.weight))
+
+    def lean(self) -> Array:
+        """int32 (H, W): whole levels of the surface; far off where there is none, so that nothing follows it."""
+        lost = np.int32(-(1 << 20))
+        return np.where(self.there, np.rint(self.value).astype(np.int32), lost)
+
+
+@dataclass(frozen=True, slots=True)
 class Volume:
     """Path costs of every pixel and level: ``total`` uint16 (H, W, D)."""
 
@@ -95,8 +129,23 @@ def matching_costs(left: Array, right: Array, levels: Levels, outside: int) -> A
     return cost
 
 
-def path_costs(cost: Array, levels: Levels, grades: Array, penalties: Penalties, check: Check) -> Array:
-    """uint16 (H, W, D): ``cost`` summed along eight paths.
+def lean_on(cost: Array, prior: Prior, levels: Levels) -> None:
+    """Adds to ``cost`` what each level costs for lying off the prior; in place."""
+    from visint_stereo.semiglobal import _kernels
+
+    weight = np.where(prior.there, prior.weight, np.float32(0)).astype(np.float32)
+    _kernels.lean_on(cost, prior.value, weight, levels.first, levels.lowest(cost.shape[:2]))
+
+
+def path_costs(
+    cost: Array,
+    levels: Levels,
+    grades: Array,
+    penalties: Penalties,
+    check: Check,
+    prior: Prior | None = None,
+) -> Array:
+    """uint16 (H, W, D): ``cost`` summed along eight paths, which climb with the ``prior``.
 
     Semi-global matching (Hirschmüller 2008, doi:10.1109/TPAMI.2007.1166, Eq. 13), its large penalty falling
     with the brightness step between neighbours.
@@ -105,10 +154,11 @@ def path_costs(cost: Array, levels: Levels, grades: Array, penalties: Penalties,
 
     total = np.zeros(cost.size, dtype=np.uint16)
     base = levels.lowest(grades.shape)
-    pad = 0 if levels.base is None else levels.count
+    lean = np.zeros(grades.shape, np.int32) if prior is None else prior.lean()
+    pad = levels.count if levels.base is not None else 0 if prior is None else 2
     brightness = (grades >> 4).astype(np.uint8)
     prices = (brightness, np.uint8(penalties.small), penalties.steep())
     for way in (1, -1):
-        _kernels.aggregate(cost.reshape(-1), cost.shape, base, pad, *prices, total, way)
+        _kernels.aggregate(cost.reshape(-1), cost.shape, base, lean, pad, *prices, total, way)
         check()
     return total.reshape(cost.shape)
