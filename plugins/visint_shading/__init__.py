@@ -14,5 +14,7 @@ def visint_modules() -> list[Any]:
     """The modules of this plugin; imported here so that finding the plugin costs nothing."""
     from visint_shading.albedo import AlbedoOf
     from visint_shading.incidence import IncidenceOf
+    from visint_shading.oliensis_dupuis import OliensisDupuis
+    from visint_shading.slope import Slope
 
-    return [AlbedoOf, IncidenceOf]
+    return [AlbedoOf, IncidenceOf, OliensisDupuis, Slope]

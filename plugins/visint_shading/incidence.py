@@ -40,8 +40,8 @@ class IncidenceOf(Module[IncidenceParams, ShadingInputs, IncidenceOutputs]):
 
     Assumes Lambertian surfaces, one albedo a region, one light and no light from other surfaces. Reliability is
     near 1 only where the map's surface confirms all that: 0 in shadow, on highlights, on textured regions,
-    where brightness does not follow the map's normals, and where the surface faces the light, since there a slope
-    hardly changes brightness.
+    where brightness does not follow the map's normals, and where the surface faces the light, since there a
+    slope hardly changes brightness.
     """
 
     name = "incidence"

@@ -47,14 +47,15 @@ class ShadingInputs(Ports):
 class Photometry(NamedTuple):
     """What brightness says, pixel by pixel and region by region.
 
-    ``orientation`` is the map's surface, ``light`` unit vectors (3,) or (H, W, 3); None if not known.
-    ``incidence`` is what brightness makes of it, NaN where it says
-    nothing, with ``sigma`` and ``reliability``, float32 (H, W). ``trust`` is by label.
+    ``orientation`` is the map's surface, ``source`` the light and ``light`` unit vectors to it, (3,) or (H, W,
+    3); None if not known. ``incidence`` is what brightness makes of it, NaN where it says nothing, with
+    ``sigma`` and ``reliability``, float32 (H, W). ``trust`` is by label.
     """
 
     camera: Camera
     seen: Seen
     orientation: Orientation | None
+    source: Light | None
     light: Array | None
     light_trust: float
     albedo: Albedo
@@ -86,6 +87,7 @@ def photometry_of(inputs: ShadingInputs, window: float) -> Photometry:
         camera,
         view,
         surface,
+        fit.light if fit else None,
         directions,
         fit.trust if fit else 0.0,
         albedo,

@@ -10,8 +10,10 @@ from visint.arrays import Array
 
 __all__ = ["Albedo", "albedo_by_region", "given_by_region", "percentile_by_region"]
 
-FACING = 0.955
-"""Cosine of incidence (17°) from which a region's brightest pixels count as facing the light."""
+FACING = 0.93
+"""Cosine of incidence (21°) from which a region's brightest twentieth counts as facing the light."""
+FACED = 0.985
+"""What that cosine is on a sphere: so much of it belongs to facing the light."""
 STEPS = 512
 
 
@@ -51,8 +53,9 @@ def albedo_by_region(even: Array, labels: Array, cosine: Array | None, spread: f
     if cosine is None:
         return Albedo(maximum, np.full(count + 1, 0.1), maximum > 0)
     regressed = _regressed(even, labels, cosine, ambient, count)
-    faces = _facing(even, labels, cosine, count) & (maximum > 0)
-    value = np.where(faces, maximum, regressed)
+    leans = _cosine_of_brightest(even, labels, cosine, count)
+    faces = (leans > FACING) & (maximum > 0)
+    value = np.where(faces, maximum / np.clip(leans / FACED, 0.9, 1), regressed)
     return Albedo(value, np.where(faces, 0.02, 0.05), faces)
 
 
@@ -66,14 +69,14 @@ def _regressed(even: Array, labels: Array, cosine: Array, ambient: float, count:
     return found
 
 
-def _facing(even: Array, labels: Array, cosine: Array, count: int) -> Array:
-    """Bool by label: the mean cosine of the brightest twentieth is large."""
+def _cosine_of_brightest(even: Array, labels: Array, cosine: Array, count: int) -> Array:
+    """float64 (N + 1,): the map's mean cosine over the brightest twentieth of each region; 0 unknown."""
     bright = percentile_by_region(even, labels, 0.95)
     top = (labels > 0) & np.isfinite(cosine)
     top &= even >= bright[np.where(top, labels, 0)]
     sums = np.bincount(labels[top], cosine[top], minlength=count + 1)
     members = np.bincount(labels[top], minlength=count + 1)
-    return np.asarray(sums > FACING * np.maximum(members, 1))
+    return np.asarray(sums / np.maximum(members, 1))
 
 
 def given_by_region(albedo: Array, labels: Array) -> Albedo:

@@ -83,8 +83,9 @@ def trust_of(found: Agreement, albedo: Array) -> Array:
 
     Only where brightness follows the map's surface (a region's own correlation, or, if brightness or surface
     hardly change within it, that of all regions if this one has the albedo of the rest), where their quotient
-    is constant and near the region's ``albedo`` (highlights lift maxima above it), and where nothing finer than the surface's bends is seen. Thresholds lie between lab scenes with and without texture, of seeds 100
-    to 305 and the 1992 matcher's depth; see the page on shading.
+    is constant and near the region's ``albedo`` (highlights lift maxima above it), and where nothing finer than
+    the surface's bends is seen. Thresholds lie between lab scenes with and without texture, of seeds 100 to 305
+    and the 1992 matcher's depth; see the page on shading.
     """
     own = _ramp(found.correlation, 0.6, 0.85) * (found.bend > 0.04)
     alike = np.abs(found.ratio / max(found.pooled_ratio, 1e-6) - 1) < 0.2

@@ -25,7 +25,8 @@ def onto_cone(normals: Array, light: Array, cosine: Array) -> tuple[Array, Array
     clear = np.sqrt((aside * aside).sum(axis=-1, keepdims=True))
     with np.errstate(divide="ignore", invalid="ignore"):
         aside = np.where(clear > 1e-6, aside / clear, 0)
-    c = np.clip(cosine, -1, 1)[..., None]
-    turned = c * light + np.sqrt(1 - c * c) * aside
-    turned = turned / np.sqrt((turned * turned).sum(axis=-1, keepdims=True))
-    return np.where(turned[..., 2:] < 0, turned, np.nan).astype(np.float32), clear[..., 0].astype(np.float32)
+        c = np.clip(cosine, -1, 1)[..., None]
+        turned = c * light + np.sqrt(1 - c * c) * aside
+        turned = turned / np.sqrt((turned * turned).sum(axis=-1, keepdims=True))
+        seen = np.where(turned[..., 2:] < 0, turned, np.nan)
+    return seen.astype(np.float32), clear[..., 0].astype(np.float32)

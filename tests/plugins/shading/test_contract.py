@@ -5,6 +5,8 @@ from __future__ import annotations
 from visint.testing import ModuleContract
 from visint_shading.albedo import AlbedoOf
 from visint_shading.incidence import IncidenceOf
+from visint_shading.oliensis_dupuis import OliensisDupuis
+from visint_shading.slope import Slope
 
 
 class TestAlbedo(ModuleContract):
@@ -13,3 +15,11 @@ class TestAlbedo(ModuleContract):
 
 class TestIncidence(ModuleContract):
     module = IncidenceOf
+
+
+class TestOliensisDupuis(ModuleContract):
+    module = OliensisDupuis
+
+
+class TestSlope(ModuleContract):
+    module = Slope

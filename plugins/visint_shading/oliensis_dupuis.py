@@ -1,0 +1,112 @@
+"""``shading.oliensis_dupuis``: relief and normals from the points that face the light outwards."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from visint.arrays import Array, Mask
+from visint.fields import NormalsEvidence, ReliefEvidence
+from visint.module import Context, Module, Params, Ports
+from visint_shading.heights.relief import Relief, relief_of
+from visint_shading.photometry import Photometry, ShadingInputs, photometry_of
+from visint_shading.premises import PREMISES, tell
+from visint_shading.slope import angle_error
+
+__all__ = ["OliensisDupuis"]
+
+
+class OliensisDupuisParams(Params):
+    """Parameters of ``shading.oliensis_dupuis``.
+
+    Parameters
+    ----------
+    window
+        Over how many full-size pixels the map's slopes are evened before it is asked how a surface bends.
+    otherwise
+        How a surface bends at singular points of which the map knows nothing.
+    """
+
+    window: float = Field(default=12.0, gt=0)
+    otherwise: Literal["convex", "concave"] = "convex"
+
+
+class OliensisDupuisOutputs(Ports):
+    """Relief (depth but for scale; of the map's scale where it has depth), normals, and the singular points."""
+
+    relief: ReliefEvidence
+    normals: NormalsEvidence
+    singular: Mask[Array, "H W"]
+
+
+class OliensisDupuis(Module[OliensisDupuisParams, ShadingInputs, OliensisDupuisOutputs]):
+    """Relief from singular points outwards: from where a surface faces the light, at least cost to every pixel.
+
+    J. Oliensis and P. Dupuis, Direct method for reconstructing shape from shading, CVPR 1992,
+    doi:10.1109/CVPR.1992.223155. Each region for itself (section 4.1.1): the map's depth gives the height of
+    each singular point and says whether the surface is convex or concave there; nothing is carried across a
+    boundary. The eikonal equation is that of a pinhole camera and of a light behind it, an oblique or a near
+    one; solved by fast sweeping.
+
+    Assumes Lambertian surfaces, one albedo a region, one light, and that every way up or down ends at a
+    singular point that is convex or concave. Saddles do not start anything. A region without a singular point,
+    or whose result the map contradicts, gets no reliability.
+    """
+
+    name = "oliensis_dupuis"
+    assumptions = (*PREMISES, "smoothness")
+
+    def run(self, inputs: ShadingInputs, ctx: Context) -> OliensisDupuisOutputs:
+        """Relief and normals of the image's size."""
+        window = max(1.0, self.params.window / ctx.scale)
+        found = photometry_of(inputs, window)
+        ctx.check()
+        tell(found, ctx)
+        light = found.source
+        if light is None:
+            return _silence(inputs.image.shape)
+        otherwise = 1 if self.params.otherwise == "convex" else -1
+        relief = relief_of(found, light, inputs.depth, otherwise, 2.5 * window)
+        ctx.measure("singular points", float(relief.singular.bend.size - 1))
+        ctx.measure("saddles", float((relief.singular.bend[1:] == 0).sum()))
+        return _answer(found, relief)
+
+
+def _silence(shape: tuple[int, ...]) -> OliensisDupuisOutputs:
+    nothing = np.full((*shape, 3), np.nan, np.float32)
+    return OliensisDupuisOutputs(
+        relief=ReliefEvidence.of(nothing[..., 0], 1.0, 0.0),
+        normals=NormalsEvidence.of(nothing, 1.0, 0.0),
+        singular=np.zeros(shape, bool),
+    )
+
+
+def _answer(found: Photometry, relief: Relief) -> OliensisDupuisOutputs:
+    agreed = _confirmed(found, relief)
+    labels = found.seen.labels
+    error = angle_error(found.incidence, found.sigma)
+    apart = np.abs(relief.depth - np.nanmedian(relief.depth)) if np.isfinite(relief.depth).any() else 0
+    return OliensisDupuisOutputs(
+        relief=ReliefEvidence.of(
+            relief.depth,
+            0.01 * np.abs(relief.depth) + 0.1 * apart,
+            (agreed * found.trust)[labels] * (labels > 0),
+        ),
+        normals=NormalsEvidence.of(relief.normals, error + 0.05, agreed[labels] * found.reliability),
+        singular=relief.singular.group > 0,
+    )
+
+
+def _confirmed(found: Photometry, relief: Relief) -> Array:
+    """By label, in [0, 1]: less from 12° of mean angle between relief and map, none from 25°."""
+    labels = found.seen.labels
+    if found.orientation is None:
+        return np.ones(found.trust.size)
+    cosine = (relief.normals * found.orientation.normals).sum(axis=-1)
+    there = (labels > 0) & np.isfinite(cosine)
+    count = np.bincount(labels[there], minlength=found.trust.size)
+    angle = np.arccos(np.clip(cosine[there], -1, 1))
+    mean = np.bincount(labels[there], angle, minlength=found.trust.size) / np.maximum(count, 1)
+    return np.clip((0.44 - mean) / 0.23, 0, 1) * (count > 0)
