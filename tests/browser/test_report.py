@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import shutil
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +11,9 @@ import pytest
 import visint
 import visint.testing.plugin
 from visint.graph import parse_graph
+from visint.hookspecs import hookimpl
 from visint.registry import Catalog
+from visint.results.against import Against
 from visint.results.report import report
 from visint.testing.samples import sample_camera
 
@@ -38,17 +41,10 @@ hub:
 outputs: {depth: map.depth, boundaries: map.boundaries, regions: map.regions, count: measured.value}
 """
 
-FLAGS = (
-    "--headless=new",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-dev-shm-usage",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--no-first-run",
-    "--host-resolver-rules=MAP * ~NOTFOUND",
-)
+PARTS = """
+const figures = [...document.querySelectorAll('figure[data-over]')];
+return figures.map(f => [f.dataset.over, !!f.querySelector('.under')]);
+"""
 
 CONTRASTS = """
 const light = c => c.match(/[\\d.]+/g).slice(0, 3).map(v => v / 255)
@@ -67,42 +63,45 @@ return ['h1', 'h2', '.about', 'dt', 'nav a', 'figcaption span', 'caption', 'td',
 """
 
 
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    webdriver = pytest.importorskip("selenium.webdriver", reason="selenium is not installed")
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    driver = shutil.which("chromedriver")
-    if not (chromium and driver):
-        pytest.skip("there is no Chromium with its driver on this machine")
-    options = webdriver.ChromeOptions()
-    options.binary_location = chromium
-    for flag in (*FLAGS, f"--user-data-dir={tmp_path_factory.mktemp('profile')}"):
-        options.add_argument(flag)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    service = webdriver.ChromeService(executable_path=driver)
-    opened = webdriver.Chrome(options=options, service=service)
-    yield opened
-    opened.quit()
+DRAWING = (
+    '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 128 96" onload="document.title=1">'
+    '<script>parent.document.title = "ran"</script><path d="M9 9L99 80" stroke="red"/></svg>'
+)
+
+
+class Draws:
+    """A plugin whose writer draws, in bad faith."""
+
+    visint_contract = 1
+
+    @hookimpl
+    def visint_writers(self):
+        return {"Scalar": lambda name, value: {f"{name}.svg": DRAWING.encode()}}
 
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
-    """The address of the report of a toy run."""
+    """The address of the report of a toy run, compared with itself less a little."""
     y, x = np.mgrid[:96, :128].astype(np.float32)
     image = np.where((x - 64) ** 2 + (y - 48) ** 2 < 900, 0.8, 0.3 + x / 512).astype(np.float32)
-    graph = parse_graph(GRAPH, Catalog({"toy": visint.testing.plugin}, {}))
+    catalog = Catalog({"toy": visint.testing.plugin, "pen": Draws()}, {})
+    catalog.plugin("pen")
+    graph = parse_graph(GRAPH, catalog)
     result = visint.run(graph, left=image, right=image, camera=sample_camera(image.shape))
+    other = {"depth": ("Depth", result["depth"] - x / 100)}
     path = tmp_path_factory.mktemp("report") / "report.html"
-    path.write_text(report(result), encoding="utf-8")
+    path.write_text(report(result, Against("before", "seen", other, {})), encoding="utf-8")
     return path.as_uri()
 
 
 @pytest.fixture(params=["light", "dark"])
-def shown(request, browser, page):
+def shown(request, browser, page, surface):
     """The browser with the report open, in light and in dark."""
     scheme = {"name": "prefers-color-scheme", "value": request.param}
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [scheme]})
+    browser.get_log("browser")  # what an earlier page had to say
     browser.get(page)
+    surface.drawn(browser)
     browser.scheme = request.param
     return browser
 
@@ -152,3 +151,72 @@ def test_the_keyboard_reaches_everything(shown):
     shown.execute_script("document.querySelector('summary').focus()")
     shown.switch_to.active_element.send_keys(Keys.ENTER)
     assert shown.execute_script("return document.querySelector('details').open")
+
+
+def test_the_surface_is_drawn(shown, surface):
+    """It covers a fair part of its canvas, in more than a few tones, on the page's ground."""
+    picture = surface.seen(shown)
+    ground = picture[0, 0]
+    assert (ground.sum() < 384) == (shown.scheme == "dark")
+    off = np.abs(picture - ground).sum(axis=-1) > 12
+    assert 0.03 < off.mean() < 0.9
+    assert picture[off][:, 0].std() > 10
+
+
+def test_the_surface_turns_by_keyboard_and_mouse(shown, surface):
+    """Arrows, plus, a drag: each changes the picture; 0 brings the first back."""
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.keys import Keys
+
+    canvas = shown.find_element("css selector", ".surface canvas")
+    shown.execute_script("arguments[0].focus()", canvas)
+    first = surface.seen(shown)
+    for act in (
+        lambda: canvas.send_keys(Keys.ARROW_RIGHT),
+        lambda: canvas.send_keys("+"),
+        lambda: ActionChains(shown).drag_and_drop_by_offset(canvas, 60, 20).perform(),
+        lambda: shown.find_element("css selector", ".tools input[value='2']").click(),
+    ):
+        before, count = surface.seen(shown), surface.drawn(shown)
+        act()
+        surface.drawn(shown, count + 1)
+        assert np.abs(surface.seen(shown) - before).mean() > 0.1
+    shown.find_element("css selector", ".tools input[value='0']").click()
+    shown.execute_script("arguments[0].focus()", canvas)
+    canvas.send_keys("0")
+    assert np.abs(surface.seen(shown) - first).mean() < 0.1
+
+
+def test_sliders_move(shown):
+    """Maps lie over the photograph: the slider of one hides a part of it, the one of lines fades the view."""
+    from selenium.webdriver.common.keys import Keys
+
+    parts = shown.execute_script(PARTS)
+    assert parts.count(["swipe", True]) >= 2
+    assert ["fade", True] in parts
+    for kind, read in (("swipe", "i.style.clipPath"), ("fade", "i.previousSibling.style.opacity")):
+        script = f"const i = document.querySelector('[data-over={kind}] .stack img:last-child'); return {read}"
+        before = shown.execute_script(script)
+        slider = shown.find_element("css selector", f"[data-over={kind}] input[type=range]")
+        assert slider.get_attribute("aria-label")
+        slider.send_keys(Keys.ARROW_LEFT * 9)
+        assert shown.execute_script(script) != before
+
+
+def test_a_drawing_lies_over_the_photograph_and_runs_nothing(shown):
+    """Its script and its handler stay pictures."""
+    figure = shown.find_element("css selector", ".drawing")
+    assert figure.find_elements("css selector", ".under")
+    assert shown.title == "seen – visint report"
+
+
+def test_without_a_script_all_the_rest_is_there(browser, page, tmp_path):
+    """The page with its script taken out: every picture is shown, and the surface says what it needs."""
+    whole = Path(page.removeprefix("file://")).read_text()
+    bare = tmp_path / "bare.html"
+    bare.write_text(re.sub(r"<script>.*</script>", "", whole, flags=re.DOTALL))
+    browser.get(bare.as_uri())
+    assert "WebGL" in browser.find_element("css selector", ".surface").text
+    sizes = browser.execute_script("return [...document.images].map(i => [i.naturalWidth, i.clientWidth])")
+    assert all(min(lengths) > 0 for lengths in sizes)
+    assert browser.get_log("browser") == []
