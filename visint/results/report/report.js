@@ -171,7 +171,7 @@ function turned(yaw, pitch) {
   return [c, s * t, -s * d, 0, d, t, s, -c * t, c * d]; // columns of Rx(pitch) Ry(yaw)
 }
 
-const START = { yaw: 0.45, pitch: -0.25, away: 1.8 };
+const START = { yaw: 0.45, pitch: -0.25, away: 1.6 };
 const OPENING = 2.1; // 1 / tan of half the angle of view
 
 function painter(gl, mesh, pose) {
