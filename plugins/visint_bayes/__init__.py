@@ -13,15 +13,22 @@ visint_contract = 1
 def visint_modules() -> list[Any]:
     """The modules of this plugin; imported here so that finding the plugin costs nothing."""
     from visint_bayes.boundaries import Boundaries
+    from visint_bayes.coherence.boundaries import CohereBoundaries
     from visint_bayes.coherence.disparity import CohereDepth, CohereDisparity
     from visint_bayes.coherence.orientation import CohereNormals
     from visint_bayes.depth import Depth
     from visint_bayes.gradient import Gradient
     from visint_bayes.pairwise import Pairwise
     from visint_bayes.pointwise import Pointwise
+    from visint_bayes.strategies.description_length import DescriptionLength
+    from visint_bayes.strategies.fault_lattice import FaultLattice
+    from visint_bayes.strategies.game import Game
+    from visint_bayes.strategies.mrf import Mrf
+    from visint_bayes.strategies.relaxation import Relaxation
 
-    coherence = [CohereDepth, CohereDisparity, CohereNormals]
-    return [*coherence, Boundaries, Depth, Gradient, Pairwise, Pointwise]
+    coherence = [CohereBoundaries, CohereDepth, CohereDisparity, CohereNormals]
+    strategies = [DescriptionLength, FaultLattice, Game, Mrf, Relaxation]
+    return [*coherence, *strategies, Boundaries, Depth, Gradient, Pairwise, Pointwise]
 
 
 @hookimpl

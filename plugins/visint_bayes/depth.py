@@ -138,7 +138,7 @@ class Around(NamedTuple):
     @classmethod
     def of(cls, field: Array, boundaries: Array | None) -> Around:
         """Of ``field`` float32 (H, W)."""
-        reached = barriers.links(boundaries, field.shape)
+        reached = barriers.links_within(boundaries, field)
         mean, number = barriers.mean(field, reached)
         return cls(mean, number, reached)
 

@@ -65,7 +65,7 @@ class Gradient(Module[GradientParams, GradientInputs, GradientOutputs]):
     def run(self, inputs: GradientInputs, ctx: Context) -> GradientOutputs:
         """The map after this cue: one step."""
         ctx.check()
-        reached = barriers.links(inputs.boundaries, inputs.depth.shape)
+        reached = barriers.links_within(inputs.boundaries, inputs.depth)
         told, trust = _told(inputs, reached)
         bend = barriers.bend(inputs.depth, reached)
         against = (told * bend < 0) & np.isfinite(inputs.depth)

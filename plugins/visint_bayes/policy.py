@@ -19,8 +19,8 @@ UNIFORM: Mapping[str, Steps] = {
     "Relief": _SHAPE,
     "Normals": _SHAPE,
     "Slopes": _SHAPE,
-    "Boundaries": {"cohere": _NOTHING, "reconcile": {"uses": "bayes.boundaries"}},
+    "Boundaries": {"cohere": {"uses": "bayes.cohere_boundaries"}, "reconcile": {"uses": "bayes.boundaries"}},
     "Incidence": {"cohere": _NOTHING, "reconcile": _NOTHING},
 }
-"""Evidence on boundaries comes with its coherence (Eq. 5.19), and brightness as such (``Incidence``) tells nothing
-of depth by itself: it waits for an estimate that knows the light."""
+"""Brightness as such (``Incidence``) tells nothing of depth by itself: it waits for an estimate that knows the
+light."""

@@ -67,3 +67,18 @@ def test_slopes_imply_the_same_bend():
     found = barriers.bend_of_slopes(slopes, free)
     assert np.isclose(found[3, 5], 0.5)
     assert np.isnan(found[0, 0])
+
+
+def test_a_line_belongs_to_the_side_it_is_like():
+    """Depth 1 on the left, 5 on the right, the line itself 4: it is the right side's; a loose end bars nothing."""
+    depth = np.tile(np.float32([1, 1, 1, 4, 5, 5, 5]), (6, 1))
+    line = np.zeros(depth.shape, bool)
+    line[:, 3] = True
+    found = barriers.links_within(line, depth)
+    assert (found[:, 3] >> 1 & 1).all()
+    assert not (found[:, 3] >> 3 & 1).any()
+    assert not (found[:, 2] >> 1 & 1).any()
+    average, _ = barriers.mean(depth, found)
+    assert (average[:, 2] == 1).all()
+    line[3:, 3] = False
+    assert np.array_equal(barriers.links_within(line, depth), barriers.links(None, line.shape))

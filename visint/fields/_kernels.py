@@ -29,6 +29,45 @@ def links(lines, reached):
 
 
 @njit(cache=True, nogil=True)
+def owners(labels, field, owned):
+    """Sets ``owned`` int32 (H, W) to the labels, each 0 taking the neighbour's whose value is nearest to its own.
+
+    Where its own value or all neighbours' are unknown, the first of them; 0 stays where there is no neighbour.
+    """
+    rows, columns = labels.shape
+    for y in range(rows):
+        for x in range(columns):
+            owned[y, x] = labels[y, x]
+            if labels[y, x] != 0:
+                continue
+            nearest = np.float32(np.inf)
+            for k in range(8):
+                v, u = y + ROWS[k], x + COLUMNS[k]
+                if v < 0 or v >= rows or u < 0 or u >= columns or labels[v, u] == 0:
+                    continue
+                off = abs(field[v, u] - field[y, x])
+                if owned[y, x] == 0 or off < nearest:
+                    owned[y, x] = labels[v, u]
+                    nearest = off if off == off else nearest
+
+
+@njit(cache=True, nogil=True)
+def links_of(owned, reached):
+    """Sets ``reached`` uint8 (H, W): bit k where neighbour k has the same owner, not 0."""
+    rows, columns = owned.shape
+    for y in range(rows):
+        for x in range(columns):
+            bits = 0
+            label = owned[y, x]
+            if label != 0:
+                for k in range(8):
+                    v, u = y + ROWS[k], x + COLUMNS[k]
+                    if 0 <= v < rows and 0 <= u < columns and owned[v, u] == label:
+                        bits |= 1 << k
+            reached[y, x] = bits
+
+
+@njit(cache=True, nogil=True)
 def mean(values, reached, neighbours, average, count):
     """Mean of the known among the first ``neighbours`` that are reached, and their number."""
     rows, columns = values.shape

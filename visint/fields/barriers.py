@@ -1,7 +1,7 @@
 """Neighbours on one's own side: means, bends and medians of a field that do not cross a boundary.
 
-Boundaries are lines of pixels. A pixel of a line has no neighbours and is nobody's; a diagonal step between
-two pixels of a line, or past one whose line closes the corner, is barred too.
+Boundaries are lines of pixels, which bar every step onto them (:func:`links`), or between the regions that
+they close (:func:`links_within`).
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import numpy as np
 
 from visint.arrays import Array
 
-__all__ = ["AROUND", "EIGHT", "FOUR", "bend", "bend_of_slopes", "links", "mean"]
+__all__ = ["AROUND", "EIGHT", "FOUR", "bend", "bend_of_slopes", "links", "links_within", "mean"]
 
 AROUND = ((-1, 0), (0, 1), (1, 0), (0, -1), (-1, -1), (-1, 1), (1, 1), (1, -1))
 """Neighbours (row, column) in the order of the bits of :func:`links`: above, right, below, left; corners."""
@@ -20,6 +20,8 @@ FOUR, EIGHT = 4, 8
 
 def links(boundaries: Array | None, size: tuple[int, int]) -> Array:
     """uint8 (H, W): bit k is set where neighbour k of :data:`AROUND` is on the same side.
+
+    A pixel of a line has no neighbours and is nobody's; a diagonal step between two pixels of a line is barred.
 
     Parameters
     ----------
@@ -33,6 +35,33 @@ def links(boundaries: Array | None, size: tuple[int, int]) -> Array:
     lines = np.zeros(size, dtype=bool) if boundaries is None else boundaries
     reached = np.empty(size, dtype=np.uint8)
     _kernels.links(lines, reached)
+    return reached
+
+
+def links_within(boundaries: Array | None, field: Array) -> Array:
+    """The same for the regions that boundaries close, each pixel of a line belonging to one of them.
+
+    Boundaries have no width: a line's pixel belongs to the region beside it whose ``field`` is nearest to its
+    own, and shares what it knows with it. A line that closes nothing bars nothing. Where lines are so thick that
+    a pixel touches no region, it has no neighbours.
+
+    Parameters
+    ----------
+    boundaries
+        bool (H, W), or None where there are none.
+    field
+        float32 (H, W), NaN unknown.
+    """
+    import cv2
+
+    from visint.fields import _kernels
+
+    if boundaries is None:
+        return links(None, field.shape)
+    _, labels = cv2.connectedComponents((~boundaries).astype(np.uint8), connectivity=4)
+    owned, reached = np.empty(field.shape, dtype=np.int32), np.empty(field.shape, dtype=np.uint8)
+    _kernels.owners(labels, field, owned)
+    _kernels.links_of(owned, reached)
     return reached
 
 

@@ -204,3 +204,92 @@ def carried_back(back, field, found):
             i = np.int64(place)
             t = place - np.float32(i)
             found[y, x] = (np.float32(1) - t) * back[y, i] + t * back[y, min(i + 1, columns - 1)]
+
+
+@njit(cache=True, nogil=True)
+def _ray(lines, labels, field, sure, y, x, down, across, reach, found):
+    """What lies on one side of a line: fills ``found`` with mean place, mean value, slope and sureness.
+
+    Goes from (y, x) in steps of (down, across), over at most one more pixel of the line, then along up to
+    ``reach`` pixels of one label. Gives that label, 0 if there are fewer than two of them.
+    """
+    rows, columns = field.shape
+    label, n = 0, 0
+    first, last = np.float32(0), np.float32(0)
+    where, total, trust = 0.0, 0.0, 0.0
+    for step in range(1, reach + 2):
+        v, u = y + step * down, x + step * across
+        if v < 0 or v >= rows or u < 0 or u >= columns or np.isnan(field[v, u]):
+            break
+        if lines[v, u]:
+            if n > 0 or step > 1:
+                break
+            continue
+        if n == 0:
+            label, first = labels[v, u], field[v, u]
+        elif labels[v, u] != label or n == reach:
+            break
+        last = field[v, u]
+        n += 1
+        where += step
+        total += field[v, u]
+        trust += sure[v, u]
+    if n < 2:
+        return 0
+    found[0], found[1], found[2], found[3] = where / n, total / n, (last - first) / (n - 1), trust / n
+    return label
+
+
+@njit(cache=True, nogil=True)
+def across_lines(lines, labels, field, sure, reach, count, step, bend, trust):
+    """Adds up, by pair of labels a < b, what the field does across the lines between them.
+
+    ``step`` (N, N): by how much the two sides, each continued straight to the middle, miss each other;
+    ``bend``: by how much the slope changes, per pixel, going from a to b; ``trust`` the smaller sureness of the
+    two sides; ``count`` how many were looked at.
+    """
+    rows, columns = lines.shape
+    before, after = np.zeros(4), np.zeros(4)
+    for y in range(rows):
+        for x in range(columns):
+            if not lines[y, x]:
+                continue
+            for way in range(4):
+                down, across = (0, 1, 1, 1)[way], (1, 0, 1, -1)[way]
+                a = _ray(lines, labels, field, sure, y, x, -down, -across, reach, before)
+                if a == 0:
+                    continue
+                b = _ray(lines, labels, field, sure, y, x, down, across, reach, after)
+                if b == 0 or a == b:
+                    continue
+                # slopes are told away from the line, so going from before to after the first has the other sign
+                miss = (after[1] - after[2] * after[0]) - (before[1] - before[2] * before[0])
+                turn = after[2] + before[2]
+                sign = 1.0
+                if a > b:
+                    a, b, sign = b, a, -1.0
+                count[a, b] += 1
+                step[a, b] += sign * miss
+                bend[a, b] += turn
+                trust[a, b] += min(before[3], after[3])
+
+
+@njit(cache=True, nogil=True)
+def still_between(lines, labels, open_, kept):
+    """Sets ``kept`` where a line has, within two pixels, two labels whose border is not ``open_`` (N, N)."""
+    rows, columns = lines.shape
+    for y in range(rows):
+        for x in range(columns):
+            kept[y, x] = False
+            if not lines[y, x]:
+                continue
+            for v in range(max(y - 2, 0), min(y + 3, rows)):
+                for u in range(max(x - 2, 0), min(x + 3, columns)):
+                    a = labels[v, u]
+                    if a == 0 or kept[y, x]:
+                        continue
+                    for q in range(v, min(y + 3, rows)):
+                        for p in range(max(x - 2, 0), min(x + 3, columns)):
+                            b = labels[q, p]
+                            if b != 0 and b != a and not open_[min(a, b), max(a, b)]:
+                                kept[y, x] = True

@@ -76,7 +76,7 @@ def validated(opinions: Opinions, boundaries: Array | None, neighbours: int, lim
     from visint_bayes.coherence import _kernels
 
     size = opinions.sigma.shape
-    reached = barriers.links(boundaries, size)
+    reached = barriers.links_within(boundaries, opinions.own[..., 0])
     value, row = np.empty_like(opinions.own), np.empty(size, dtype=np.uint8)
     told, kept, spread = (np.empty((2, *size), dtype=np.float32) for _ in range(3))
     told[0], told[1] = opinions.reliability, opinions.sigma

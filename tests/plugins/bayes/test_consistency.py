@@ -61,8 +61,8 @@ def inputs(evidence, known, line=None, **more):
     return DepthInputs(**given, boundaries=line, **more)
 
 
-def normal_equations(evidence, line, weight, sharpest=0.1):
-    """β and the matrix of Eq. 5.47 written down pair by pair."""
+def normal_equations(evidence, reached, weight, sharpest=0.1):
+    """β and the matrix of Eq. 5.47 written down pair by pair, of pixels that are linked."""
     rows, columns = CAMERA.size
     sigma = np.maximum(np.nan_to_num(evidence.sigma, nan=1), sharpest)
     beta = (evidence.reliability / sigma**2).ravel().astype(float)
@@ -70,8 +70,8 @@ def normal_equations(evidence, line, weight, sharpest=0.1):
     matrix.setdiag(beta)
     for y in range(rows):
         for x in range(columns):
-            for v, u in ((y, x + 1), (y + 1, x)):
-                if v < rows and u < columns and not line[y, x] and not line[v, u]:
+            for v, u, bit in ((y, x + 1, 1), (y + 1, x, 2)):
+                if reached[y, x] >> bit & 1:
                     i, j = y * columns + x, v * columns + u
                     matrix[i, i] += weight
                     matrix[j, j] += weight
@@ -129,25 +129,23 @@ class TestEq548:
         evidence, known, line = scene(seed)
         params = DepthParams(smoothness=2.0, solve="solved", tolerance=1e-7)
         found = disparity_from_depth(Depth(params).run(inputs(evidence, known, line), Context()).depth, CAMERA)
-        beta, matrix = normal_equations(evidence, line, 0.5)
-        spoken = (beta > 0) | ~line.ravel()
-        index = np.flatnonzero(spoken)
-        wanted = known.ravel().astype(float)
-        right = beta * np.nan_to_num(evidence.value).ravel()
-        wanted[index] = spsolve(matrix[index][:, index].tocsc(), right[index])
+        reached = barriers.links_within(line, known)
+        assert not (reached[:, 6] >> 1 & 1 & reached[:, 7] >> 1 & 1).all()
+        beta, matrix = normal_equations(evidence, reached, 0.5)
+        wanted = spsolve(matrix.tocsc(), beta * np.nan_to_num(evidence.value).ravel())
         assert np.allclose(found.ravel(), wanted, atol=2e-4)
 
     def test_steps_go_where_the_solution_is(self):
         """Jacobi steps, each from the map before, end at the solved map."""
-        evidence, known, line = scene(3)
-        solved = Depth(DepthParams(solve="solved", tolerance=1e-7)).run(inputs(evidence, known, line), Context())
+        evidence, known, _ = scene(3)
+        solved = Depth(DepthParams(solve="solved", tolerance=1e-7)).run(inputs(evidence, known), Context())
         step = Depth(DepthParams())
         for _ in range(400):
-            known = disparity_from_depth(step.run(inputs(evidence, known, line), Context()).depth, CAMERA)
+            known = disparity_from_depth(step.run(inputs(evidence, known), Context()).depth, CAMERA)
         assert np.allclose(known, disparity_from_depth(solved.depth, CAMERA), atol=1e-3)
 
     def test_what_nobody_knows_stays(self):
-        """On a boundary without evidence, and everywhere where there is no neighbour either."""
+        """Without evidence and without neighbours: here every pixel is a boundary."""
         evidence, known, line = scene(1)
         nothing = DisparityEvidence.of(evidence.value, 1.0, 0.0)
         everywhere = np.ones_like(line)
@@ -169,7 +167,9 @@ class TestConfidence:
         given = inputs(evidence, field(5), depth_confidence=field(0.5))
         found = Depth(DepthParams(smoothness=4.0)).run(given, Context())
         assert np.allclose(variance_of(found.depth_confidence), 1 / 4.8, rtol=1e-4)
-        assert np.allclose(variance_of(Depth().run(given, Context(level=1)).depth_confidence), 1 / 1.5, rtol=1e-4)
+        assert np.allclose(
+            variance_of(Depth().run(given, Context(level=1)).depth_confidence), 1 / 1.5, rtol=1e-4
+        )
 
     def test_many_looks_are_not_many_measurements(self):
         """The filter settles where 1/v = 1/(v + 1/λ) + β, however often the same is said."""
@@ -213,7 +213,9 @@ class TestEq580:
 
     def run(self, alpha=0.05, **evidence):
         params = GradientParams(alpha=alpha)
-        return Gradient(params).run(GradientInputs(depth=self.bowl(), camera=CAMERA, **evidence), Context()).depth
+        return (
+            Gradient(params).run(GradientInputs(depth=self.bowl(), camera=CAMERA, **evidence), Context()).depth
+        )
 
     def test_it_acts_where_the_signs_differ(self):
         """ΔD = 0.05; the cue bends the other way by 1: D̄ − α ΔD_sh = D + 0.05 + 0.05, in the open."""
