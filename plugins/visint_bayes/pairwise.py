@@ -9,7 +9,7 @@ from pydantic import Field
 
 from visint.arrays import Array, BoundaryKinds, Depth
 from visint.arrays import Boundaries as Lines
-from visint.fields import ReliefEvidence
+from visint.fields import ReliefEvidence, barriers
 from visint.module import Context, Module, Params, Ports
 
 __all__ = ["Pairwise"]
@@ -36,10 +36,11 @@ class PairwiseParams(Params):
 
 
 class PairwiseInputs(Ports):
-    """Depth of the matcher, relief of shading (None where it is not asked), and what holds them apart.
+    """Depth of the matcher, relief of shading, and what holds them apart.
 
-    Depth keeps its value on ``boundaries``, where stereo knows best; not where ``kinds`` says that the
-    boundary is a limb or an occluding edge.
+    Without relief, on levels where shading is not asked, there is no step. Depth keeps its value on
+    ``boundaries``, where stereo knows best; where ``kinds`` says that the boundary is a limb or an occluding
+    edge it takes the mean of its own side.
     """
 
     depth: Depth[Array, "H W"]
@@ -64,28 +65,31 @@ class Pairwise(Module[PairwiseParams, PairwiseInputs, PairwiseOutputs]):
     """
 
     name = "pairwise"
+    assumptions = ("smoothness", "lambertian_reflectance")
 
     def run(self, inputs: PairwiseInputs, ctx: Context) -> PairwiseOutputs:
         """One step from ``depth``."""
-        walls = np.zeros(inputs.depth.shape, bool) if inputs.boundaries is None else inputs.boundaries
-        bend = _bend(inputs.depth, walls)
-        told = np.zeros_like(bend) if inputs.relief is None else _bend(inputs.relief.value, walls)
-        against = told * bend < 0
-        smooth = np.where(against, bend, 0) if self.params.smoothing == "against" else bend
-        step = smooth - np.float32(self.params.alpha) * np.where(against, told, 0)
-        held = walls if inputs.kinds is None else walls & ~np.isin(inputs.kinds, SEEN_BY_ONE_VIEW)
+        if inputs.relief is None:
+            return PairwiseOutputs(depth=inputs.depth)
+        reached = barriers.links_within(inputs.boundaries, inputs.depth)
+        own = barriers.bend(inputs.depth, reached)
+        told = np.nan_to_num(barriers.bend(inputs.relief.value, reached))
+        against = told * own < 0
+        smooth = np.where(against, own, 0) if self.params.smoothing == "against" else own
+        step = np.nan_to_num(smooth - np.float32(self.params.alpha) * np.where(against, told, 0))
         ctx.check()
-        return PairwiseOutputs(depth=inputs.depth + np.where(held, 0, step).astype(np.float32))
+        ctx.measure("against", float(against.mean()))
+        return PairwiseOutputs(depth=_on_boundaries(inputs, reached, inputs.depth + step))
 
 
-def _bend(field: Array, walls: Array) -> Array:
-    """Mean of the four neighbours less the pixel, float32 (H, W); 0 where none is known on this side."""
-    inner = np.pad(np.where(walls, np.float32(np.nan), field), 1, constant_values=np.nan)
-    around = (inner[:-2, 1:-1], inner[2:, 1:-1], inner[1:-1, :-2], inner[1:-1, 2:])
-    total, count = np.zeros_like(field), np.zeros_like(field)
-    for neighbour in around:
-        known = np.isfinite(neighbour)
-        total += np.where(known, neighbour, 0)
-        count += known
-    bend = total / np.maximum(count, 1) - field
-    return np.where((count > 0) & np.isfinite(bend), bend, 0).astype(np.float32)
+def _on_boundaries(inputs: PairwiseInputs, reached: Array, after: Array) -> Array:
+    """``after`` inside; on boundaries stereo's depth, or that of the surface which turns away or ends there."""
+    lines = inputs.boundaries
+    if lines is None:
+        return after
+    held = np.where(lines, inputs.depth, after)
+    if inputs.kinds is None:
+        return held
+    beside, count = barriers.mean(np.where(lines, np.float32(np.nan), after), reached)
+    loose = lines & np.isin(inputs.kinds, SEEN_BY_ONE_VIEW) & (count > 0)
+    return np.where(loose, beside, held)

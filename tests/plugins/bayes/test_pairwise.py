@@ -19,7 +19,8 @@ class TestContract(ModuleContract):
 
 
 def step(depth, relief=None, *, boundaries=None, kinds=None, **params):
-    told = None if relief is None else ReliefEvidence.of(relief.astype(np.float32), 1.0, 1.0)
+    flat = np.zeros(depth.shape) if relief is None else relief
+    told = ReliefEvidence.of(flat.astype(np.float32), 1.0, 1.0)
     given = PairwiseInputs(depth=depth.astype(np.float32), relief=told, boundaries=boundaries, kinds=kinds)
     return Pairwise(PairwiseParams(**params)).run(given, Context()).depth
 
@@ -52,23 +53,29 @@ def test_smoothing_against_touches_only_what_bends_the_other_way():
     )
 
 
-def test_a_plane_stays_a_plane_up_to_the_frame():
-    """The mean of four neighbours of a plane is the plane."""
+def test_without_relief_there_is_no_step():
+    """On levels where shading is not asked the matcher's depth goes through."""
+    depth = (50 + 0.02 * COLUMNS**2).astype(np.float32)
+    assert np.array_equal(Pairwise().run(PairwiseInputs(depth=depth), Context()).depth, depth)
+
+
+def test_a_plane_stays_a_plane():
+    """The mean of opposite neighbours on a plane is the plane, at the frame too."""
     depth = 50 + 0.1 * COLUMNS - 0.2 * ROWS
-    assert step(depth)[INNER] == pytest.approx(depth[INNER], abs=1e-4)
+    assert step(depth) == pytest.approx(depth, abs=1e-4)
 
 
 def test_nothing_crosses_a_boundary():
     """Two flat halves, a line of boundary between: neither learns of the other, the boundary keeps its own."""
     wall = COLUMNS == 15
     depth = np.where(COLUMNS > 15, 60.0, 50.0)
-    depth[:, 15] = 57.0
+    depth[:, 15] = 60.0
     assert np.array_equal(step(depth, boundaries=wall), depth.astype(np.float32))
 
 
 @pytest.mark.parametrize(("kind", "held"), [(1, False), (2, False), (3, True), (4, True), (5, True)])
 def test_boundaries_keep_stereo_s_depth_at_creases_and_marks_but_not_at_limbs(kind, held):
-    """At limbs and occluding edges the boundary's depth is its neighbours' mean."""
+    """At limbs and occluding edges the boundary's depth is its own side's."""
     wall = COLUMNS == 15
     depth = np.where(wall, 57.0, 50.0)
     kinds = np.where(wall, kind, 0).astype(np.uint8)
@@ -89,6 +96,6 @@ def test_repeated_without_stereo_the_surface_flattens():
     """Eq. 4.7 has no data term (errata): its fixed point inside a frame is flat, so it belongs into a loop."""
     depth = 50 + 0.02 * (COLUMNS - 16) ** 2
     after = depth
-    for _ in range(400):
+    for _ in range(1500):
         after = step(after)
-    assert np.ptp(after) < 0.1 * np.ptp(depth)
+    assert np.ptp(after) < 0.2 * np.ptp(depth)
