@@ -72,24 +72,24 @@ class Pairwise(Module[PairwiseParams, PairwiseInputs, PairwiseOutputs]):
         if inputs.relief is None:
             return PairwiseOutputs(depth=inputs.depth)
         reached = barriers.links_within(inputs.boundaries, inputs.depth)
-        own = barriers.bend(inputs.depth, reached)
+        depth, held = _on_boundaries(inputs, reached)
+        own = barriers.bend(depth, reached)
         told = np.nan_to_num(barriers.bend(inputs.relief.value, reached))
         against = told * own < 0
         smooth = np.where(against, own, 0) if self.params.smoothing == "against" else own
         step = np.nan_to_num(smooth - np.float32(self.params.alpha) * np.where(against, told, 0))
         ctx.check()
         ctx.measure("against", float(against.mean()))
-        return PairwiseOutputs(depth=_on_boundaries(inputs, reached, inputs.depth + step))
+        return PairwiseOutputs(depth=depth + np.where(held, np.float32(0), step))
 
 
-def _on_boundaries(inputs: PairwiseInputs, reached: Array, after: Array) -> Array:
-    """``after`` inside; on boundaries stereo's depth, or that of the surface which turns away or ends there."""
-    lines = inputs.boundaries
+def _on_boundaries(inputs: PairwiseInputs, reached: Array) -> tuple[Array, Array]:
+    """Depth to start from, limbs and occluding edges with their own side's; and where it is held, bool (H, W)."""
+    depth, lines, kinds = inputs.depth, inputs.boundaries, inputs.kinds
     if lines is None:
-        return after
-    held = np.where(lines, inputs.depth, after)
-    if inputs.kinds is None:
-        return held
-    beside, count = barriers.mean(np.where(lines, np.float32(np.nan), after), reached)
-    loose = lines & np.isin(inputs.kinds, SEEN_BY_ONE_VIEW) & (count > 0)
-    return np.where(loose, beside, held)
+        return depth, np.zeros(depth.shape, bool)
+    if kinds is None:
+        return depth, lines
+    beside, count = barriers.mean(np.where(lines, np.float32(np.nan), depth), reached)
+    loose = lines & np.isin(kinds, SEEN_BY_ONE_VIEW) & (count > 0)
+    return np.where(loose, beside, depth), lines & ~loose
