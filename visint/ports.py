@@ -135,7 +135,7 @@ class Ports(BaseModel):
     )
     specs: ClassVar[Mapping[str, PortSpec]] = {}
     """The ports of this class by name, in the order of declaration."""
-    dims_agree: ClassVar[Callable[[Mapping[str, Any]], None]]
+    dims_agree: ClassVar[Callable[[Mapping[str, Any]], None]] = staticmethod(always)
 
     @classmethod
     def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:

@@ -59,7 +59,7 @@ def test_evidence_of_every_spoke_is_kept(hub, tmp_path, files):
     hub("out", files=files)
     with np.load(tmp_path / "out/evidence.npz") as stored:
         parts = {f"{spoke}.{part}" for spoke in ("first", "second") for part in PARTS}
-        assert set(stored) == parts
+        assert {name for name in stored if not name.endswith(".unit")} == parts
         assert all(stored[part].shape == (16, 24) for part in parts)
     record = json.loads((tmp_path / "out/run.json").read_text())
     assert record["outputs"]["depth"]["last_written_by"]["node"]

@@ -52,7 +52,7 @@ class TestCheck:
         done = visint("check", "g.yaml")
         assert done.code in (2, 4)
         assert "toy" in done.err
-        assert "lab, stereo" in done.err
+        assert "plugins: bayes, " in done.err
 
 
 class TestShow:

@@ -25,6 +25,7 @@ EVERYTHING = {
     "profile.json",
     "report.html",
     "run.json",
+    "surface.glb",
 }
 SHIFT, ROWS, COLUMNS = 5, 48, 64
 
@@ -65,7 +66,7 @@ class TestArtifacts:
 
     def test_normals_face_the_camera(self, former):
         with np.load(former / "normals.npz", allow_pickle=False) as stored:
-            assert list(stored) == ["normals"]
+            assert list(stored) == ["normals", "normals.unit"]
             normals = stored["normals"]
         assert normals.shape == (ROWS, COLUMNS, 3)
         assert normals.dtype == np.float32

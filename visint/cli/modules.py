@@ -95,8 +95,10 @@ def _unknown(catalog: Catalog, name: str) -> VisintError:
     """Every module that there is, broken plugins' apart, and the one that was meant."""
     plugins = [_plugin(catalog, plugin) for plugin in catalog.plugin_names]
     known = [one for plugin in plugins for one in plugin.get("modules", ())]
-    near = did_you_mean(name, [*known, *catalog.plugin_names])
-    write = f"visint modules {near}" if near else ""
+    by_name = {one.partition(".")[2]: one for one in known}  # who forgets the plugin means the module
+    last = name.rpartition(".")[2]
+    near = did_you_mean(name, [*known, *catalog.plugin_names]) or by_name.get(did_you_mean(last, by_name) or "")
+    write = f"visint modules {near}" if near else "visint modules   (all of them, with a line each)"
     return UsageError.of(
         "VI201", f"no module is named {name!r}", choices="modules: " + listed(known), write=write
     )

@@ -87,6 +87,21 @@ def no_pyramid_in_a_pyramid(graph: Graph, draft: Draft) -> Found:
             found = f"the pyramid {name!r} lies inside the pyramid {outer!r}"
             write = f"{name}: {{inside: {loop.spec.inside}, times: 20}}"
             yield Problem("VI217", found, draft.where("loops", name, "inside"), write=write)
+    for name, node in graph.nodes.items():
+        outer, inner = graph.pyramid_around(node.loop), _pyramid_of(node.callee.graph)
+        if outer is not None and inner is not None:
+            found = f"{node.callee.id} has a pyramid of its own, {inner!r}, and is called inside {outer!r}"
+            write = "(no 'loop', or one outside the pyramid)"
+            yield Problem("VI217", found, draft.where("nodes", name, "loop"), write=write)
+
+
+def _pyramid_of(graph: Graph | None) -> str | None:
+    """The first pyramid in a sub-graph, those that it calls included."""
+    if graph is None:
+        return None
+    own = (name for name, loop in graph.loops.items() if loop.pyramid)
+    called = (_pyramid_of(node.callee.graph) for node in graph.nodes.values())
+    return next((one for one in (*own, *called) if one is not None), None)
 
 
 def ends_are_sound(graph: Graph, draft: Draft) -> Found:

@@ -46,6 +46,10 @@ def read_graph(path: Path) -> Source:
 
 
 def _unreadable(problem: Problem) -> Problem:
+    if problem.code == "VI301":  # no file: there is no line to point at
+        found = "there is no such graph file" if problem.found == "no such file" else problem.found
+        write = problem.write or "visint check NAME   (a shipped graph, or the path of a file)"
+        return Problem("VI101", found, Where(problem.where.file), problem.choices, write)
     code = "VI107" if problem.code == "VI303" else "VI101"
     place = Where(problem.where.file, problem.where.line or 1, problem.where.column or 1)
     empty = problem.found == "is empty"

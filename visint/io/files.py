@@ -14,7 +14,7 @@ from visint.errors import InputError
 from visint.io.limits import LIMITS
 from visint.names import did_you_mean
 
-__all__ = ["Note", "digest", "files_in", "read_bytes", "shown", "silent"]
+__all__ = ["Note", "digest", "files_in", "head_of", "read_bytes", "shown", "silent"]
 
 Note = Callable[[str], None]
 """Told in one sentence what reading changed on the way: alpha dropped, rounded to float32."""
@@ -64,6 +64,16 @@ def read_bytes(path: str | Path, *, most: int = LIMITS.most_bytes) -> bytes:
     if not data:
         raise InputError.of("VI302", "is empty", where=shown(path))
     return data
+
+
+def head_of(path: str | Path) -> bytes:
+    """The first bytes of the file, by which its format is told; raises as :func:`read_bytes` does."""
+    try:
+        _refuse_odd(path)
+        with Path(path).open("rb") as file:
+            return file.read(16)
+    except (OSError, ValueError) as error:
+        raise _missing(path, error) from None
 
 
 def digest(path: str | Path) -> str:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from enum import Enum
 
 from visint.io.refusals import broken
-from visint.io.tiff_header import tiff_header
 
-__all__ = ["RASTERS", "STORED", "Format", "format_of"]
+__all__ = ["RASTERS", "STORED", "Format", "binary_sort", "format_of"]
 
 
 class Format(Enum):
@@ -77,8 +76,17 @@ def format_of(data: bytes, name: str) -> Format:
     raise broken(name, f"is {_seems(data)}", choices=f"formats read: {known}")
 
 
+def binary_sort(head: bytes) -> str | None:
+    """What a file that should be text is, by its first bytes, if they are those of a binary format."""
+    marks = [(mark, f"a {format_.value} file") for mark, format_ in _MARKS] + list(_STRANGERS)
+    binary = ((mark, what) for mark, what in marks if not mark.isalnum() or mark in (b"RIFF", b"MATLAB"))
+    return next((what for mark, what in binary if head.startswith(mark)), None)
+
+
 def _of_tiff(data: bytes, name: str) -> Format:
     """A TIFF file holds whole numbers or floats: its header decides how it is read."""
+    from visint.io.tiff_header import tiff_header  # numpy, which text files do without
+
     return Format.FLOAT_TIFF if tiff_header(data, name).floats else Format.TIFF
 
 

@@ -116,8 +116,11 @@ class _Manner(NamedTuple):
 
 def _array(data: bytes, spec: ArraySpec, manner: _Manner) -> Array:
     name, gamma, note, limits = manner
-    format_ = format_of(data, name)
     takes = _TAKES.get(spec.kind, STORED)
+    if takes == STORED and _is_text(data):
+        found = f"is text; a {spec.kind} is read from npy, npz"
+        raise unfit(name, found, write='numpy.save("numbers.npy", numpy.loadtxt("numbers.txt"))')
+    format_ = format_of(data, name)
     if format_ not in takes:
         wanted = ", ".join(sorted(one.value for one in takes))
         raise unfit(name, f"is {format_.value}; a {spec.kind} is read from {wanted}")
@@ -128,6 +131,13 @@ def _array(data: bytes, spec: ArraySpec, manner: _Manner) -> Array:
     if spec.kind in ("Image", "Color"):
         value = intensity(value, 3 if spec.kind == "Color" else 1, gamma)
     return conform(value, spec, name, note)
+
+
+def _is_text(data: bytes) -> bool:
+    head = data[:512]
+    return (
+        b"\0" not in head and head.isascii() and not head.startswith((b"P2", b"P3", b"P5", b"P6", b"Pf", b"PF"))
+    )
 
 
 def read_image(

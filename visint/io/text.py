@@ -6,7 +6,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from visint.io.files import read_bytes, shown
+from visint.errors import InputError
+from visint.io.files import head_of, read_bytes, shown
+from visint.io.formats import binary_sort
 from visint.io.refusals import broken
 
 __all__ = ["read_json", "read_text", "text_of"]
@@ -27,11 +29,24 @@ def read_text(path: str | Path, *, most: int = _MOST) -> str:
     InputError
         As :func:`visint.io.read_bytes`; VI302 if it is not UTF-8 text, with the line of the first bad byte.
     """
-    return text_of(read_bytes(path, most=most), shown(path))
+    try:
+        data = read_bytes(path, most=most)
+    except InputError as error:
+        if error.problems[0].code == "VI303":  # what it is says more than how large it is
+            _refuse_binary(head_of(path), shown(path))
+        raise
+    return text_of(data, shown(path))
+
+
+def _refuse_binary(head: bytes, name: str) -> None:
+    sort = binary_sort(head)
+    if sort is not None:
+        raise broken(name, f"is {sort}, not text")
 
 
 def text_of(data: bytes, name: str) -> str:
     """The text in ``data``, named ``name`` in messages; raises as :func:`read_text`."""
+    _refuse_binary(data[:16], name)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -20,13 +20,7 @@ from visint.results.records import Measure, Record, Stop, Turn, Warned
 
 __all__ = ["Result", "gather"]
 
-_RELATIVE = Warned(
-    "camera",
-    0,
-    0,
-    "relative_depth",
-    "without a calibration depth is relative: known up to scale, and a stretch along the line of sight",
-)
+_RELATIVE = "without a calibration depth is relative: known up to scale, and a stretch along the line of sight"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -188,11 +182,21 @@ def gather(  # noqa: PLR0913 - all that a run leaves, put together in this one p
     values = {name: _plain(value) for name, (_, value) in typed.items()}
     kinds = {name: kind for name, (kind, _) in typed.items()}
     if "Depth" in kinds.values() and (maps if camera is None else not camera.calibrated):
-        record.warnings.append(_RELATIVE)
+        guessed = f"; a focal length of {camera.focal_length:g} pixels is a guess" if camera else ""
+        record.warnings.append(Warned("camera", 0, 0, "relative_depth", _RELATIVE + guessed))
+    record.warnings += _absent(graph, outputs, record)
     weights = attribution or {}
     return Result(
         graph, dict(inputs), values, kinds, confidence, evidence, weights, writers, record, seed, seconds
     )
+
+
+def _absent(graph: Graph, outputs: Mapping[str, Any], record: Record) -> list[Warned]:
+    """Outputs that the graph declares and nothing filled, though it ran to its end."""
+    if record.stop_after is not None:
+        return []
+    said = "nothing wrote it: no file is made of it"
+    return [Warned(f"outputs.{name}", 0, 0, "absent", said) for name in graph.outputs if name not in outputs]
 
 
 def _field_of(graph: Graph, output: str) -> str:
