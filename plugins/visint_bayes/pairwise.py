@@ -84,7 +84,7 @@ class Pairwise(Module[PairwiseParams, PairwiseInputs, PairwiseOutputs]):
 
 
 def _on_boundaries(inputs: PairwiseInputs, reached: Array) -> tuple[Array, Array]:
-    """Depth to start from, limbs and occluding edges with their own side's; and where it is held, bool (H, W)."""
+    """Depth to start from, limbs and occluding edges with their own side's; where it is held, bool (H, W)."""
     depth, lines, kinds = inputs.depth, inputs.boundaries, inputs.kinds
     if lines is None:
         return depth, np.zeros(depth.shape, bool)
