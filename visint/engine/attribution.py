@@ -54,7 +54,8 @@ class Attribution:
 
     At each commit the field moves towards what a cue said by a share w: all weights so far are multiplied by
     1 − w, and the cue's gets w more. What a reconciler says itself goes first: a plain port
-    ``<field>_weights`` of Confidence, one array or one for each evidence that it was given, in order.
+    ``<field>_weights`` of Confidence, one array, or a list with one for each evidence that it was given: in
+    the order of its ports as declared, then of each list.
 
     It holds the last evidence of each spoke, and two snapshots a map.
     """
@@ -154,10 +155,15 @@ def _entries(graph: Graph, commit: Node) -> Iterator[_Entry]:
         elif port != "map" and not port.endswith("_confidence"):
             reconciler = graph.nodes.get(edge.source.node)
             if reconciler is not None:
-                ports = reconciler.callee.inputs
-                given = [one for name, one in reconciler.edges() if ports[name].evidence]
-                sources = tuple(_source(graph, commit, one) for one in given)
+                sources = tuple(_source(graph, commit, one) for one in _given(reconciler))
                 yield _Entry(port, sources, reconciler.name)
+
+
+def _given(reconciler: Node) -> list[Edge]:
+    """The edges that bring a reconciler evidence, in the order of its ports as declared, then of each list."""
+    edges = list(reconciler.edges())
+    ports = [name for name, port in reconciler.callee.inputs.items() if port.evidence]
+    return [edge for port in ports for name, edge in edges if name == port]
 
 
 def _source(graph: Graph, commit: Node, edge: Edge) -> _Source:
