@@ -14,7 +14,8 @@ def visint_modules() -> list[Any]:
     """The modules of this plugin; imported here so that finding the plugin costs nothing."""
     from visint_shading.albedo import AlbedoOf
     from visint_shading.incidence import IncidenceOf
+    from visint_shading.light import LightOf
     from visint_shading.oliensis_dupuis import OliensisDupuis
     from visint_shading.slope import Slope
 
-    return [AlbedoOf, IncidenceOf, OliensisDupuis, Slope]
+    return [AlbedoOf, IncidenceOf, LightOf, OliensisDupuis, Slope]

@@ -8,36 +8,179 @@ All arrays are C-contiguous and read-only unless named ``out``; labels are int32
 import numpy as np
 from numba import njit
 
-__all__ = ["agreement_sums", "evened", "fitted", "heights", "relative_slopes"]
+__all__ = ["agreement_sums", "conics", "cosines", "directions", "evened", "fitted", "heights"]
+__all__ += ["normals_of_slopes", "planes", "relative_slopes", "turned"]
 
 
 @njit(cache=True, nogil=True)
-def evened(labels, decays, out):
-    """Recursive means along rows and columns, forth and back, that stop where the label changes.
+def evened(joined, decay, out):
+    """Recursive mean along columns, down and up, that stops where ``joined`` is 0.
 
-    Parameters: ``decays`` float32 (n,), what a neighbour keeps, one a round (Gastal and Oliveira 2011,
-    doi:10.1145/2010324.1964964, Eq. 21 with label changes as edges of infinite height). ``out`` float32
-    (C, H, W) is changed in place; a constant stays what it is.
+    Parameters: ``joined`` float32 (H, W), 1 where a pixel belongs with the one above it. ``decay`` is what a
+    neighbour keeps (Gastal and Oliveira 2011, doi:10.1145/2010324.1964964, Eq. 21, label changes as edges of
+    infinite height). ``out`` float32 (C, H, W) is changed in place; a constant stays what it is.
     """
     channels, rows, columns = out.shape
-    for decay in decays:
-        for k in range(channels):
-            plane = out[k]
-            for y in range(rows):
-                for x in range(1, columns):
-                    if labels[y, x] == labels[y, x - 1]:
-                        plane[y, x] += decay * (plane[y, x - 1] - plane[y, x])
-                for x in range(columns - 2, -1, -1):
-                    if labels[y, x] == labels[y, x + 1]:
-                        plane[y, x] += decay * (plane[y, x + 1] - plane[y, x])
-            for y in range(1, rows):
-                for x in range(columns):
-                    if labels[y, x] == labels[y - 1, x]:
-                        plane[y, x] += decay * (plane[y - 1, x] - plane[y, x])
-            for y in range(rows - 2, -1, -1):
-                for x in range(columns):
-                    if labels[y, x] == labels[y + 1, x]:
-                        plane[y, x] += decay * (plane[y + 1, x] - plane[y, x])
+    for k in range(channels):
+        plane = out[k]
+        for y in range(1, rows):
+            above, here, together = plane[y - 1], plane[y], joined[y]
+            for x in range(columns):
+                here[x] += decay * together[x] * (above[x] - here[x])
+        for y in range(rows - 2, -1, -1):
+            below, here, together = plane[y + 1], plane[y], joined[y + 1]
+            for x in range(columns):
+                here[x] += decay * together[x] * (below[x] - here[x])
+
+
+@njit(cache=True, nogil=True)
+def directions(vector, near, depth, across, down, focal, out):
+    """Unit vectors from the surface at ``depth`` to a light at the point ``vector`` (``near``), or so far away.
+
+    Parameters: ``across`` (W,) and ``down`` (H,), pixels from the principal point. ``out`` float32 (H, W, 3).
+    """
+    rows, columns = depth.shape
+    for y in range(rows):
+        for x in range(columns):
+            if near:
+                z = depth[y, x]
+                a = vector[0] - z * across[x] / focal
+                b = vector[1] - z * down[y] / focal
+                c = vector[2] - z
+                size = 1.0 / np.sqrt(a * a + b * b + c * c)
+                out[y, x, 0], out[y, x, 1], out[y, x, 2] = a * size, b * size, c * size
+            else:
+                out[y, x, 0], out[y, x, 1], out[y, x, 2] = vector[0], vector[1], vector[2]
+
+
+@njit(cache=True, nogil=True)
+def normals_of_slopes(slopes, across, down, focal, out):
+    """n ∝ (f p, f q, −(1 + x p + y q)) of slopes (2, H, W) of ln Z a pixel; ``out`` float32 (H, W, 3)."""
+    rows, columns = slopes.shape[1:]
+    for y in range(rows):
+        for x in range(columns):
+            p, q = slopes[0, y, x], slopes[1, y, x]
+            a, b = focal * p, focal * q
+            c = -max(1.0 + across[x] * p + down[y] * q, 1e-3)
+            size = 1.0 / np.sqrt(a * a + b * b + c * c)
+            if not np.isfinite(p + q):
+                size = np.nan
+            out[y, x, 0], out[y, x, 1], out[y, x, 2] = a * size, b * size, c * size
+
+
+@njit(cache=True, nogil=True)
+def cosines(normals, light, out):
+    """n·l: (H, W, 3) and (H, W, 3) to float32 (H, W)."""
+    rows, columns = out.shape
+    for y in range(rows):
+        for x in range(columns):
+            out[y, x] = (
+                normals[y, x, 0] * light[y, x, 0]
+                + normals[y, x, 1] * light[y, x, 1]
+                + normals[y, x, 2] * light[y, x, 2]
+            )
+
+
+@njit(cache=True, nogil=True)
+def turned(normals, light, cosine, out, clear):
+    """Normals turned in the plane they span with the light until their cosine is ``cosine``.
+
+    ``out`` float32 (H, W, 3), NaN where that faces away from the camera; ``clear`` (H, W): the sine between the
+    given normal and the light.
+    """
+    rows, columns = cosine.shape
+    for y in range(rows):
+        for x in range(columns):
+            i, j, k = light[y, x, 0], light[y, x, 1], light[y, x, 2]
+            a, b, c = normals[y, x, 0], normals[y, x, 1], normals[y, x, 2]
+            towards = a * i + b * j + c * k
+            a, b, c = a - towards * i, b - towards * j, c - towards * k
+            aside = np.sqrt(a * a + b * b + c * c)
+            clear[y, x] = aside
+            wanted = min(max(cosine[y, x], -1.0), 1.0)
+            lean = np.sqrt(1.0 - wanted * wanted) / aside if aside > 1e-6 else 0.0
+            a, b, c = wanted * i + lean * a, wanted * j + lean * b, wanted * k + lean * c
+            size = 1.0 / np.sqrt(a * a + b * b + c * c)
+            if not c < 0.0 or not np.isfinite(aside + cosine[y, x]):
+                size = np.nan
+            out[y, x, 0], out[y, x, 1], out[y, x, 2] = a * size, b * size, c * size
+
+
+@njit(cache=True, nogil=True)
+def conics(cosine, light, across, down, focal, margin, out):
+    """A, B, C, D, E of the ellipse of gradients at each pixel: see ``heights.gradients``; ``out`` (5, H, W)."""
+    rows, columns = cosine.shape
+    for y in range(rows):
+        v = down[y]
+        for x in range(columns):
+            u = across[x]
+            i, j, k = light[y, x, 0], light[y, x, 1], light[y, x, 2]
+            facing = min((i * u + j * v) / focal + k, -1e-3)
+            size = -1.0 / facing
+            a, b = i * focal - k * u, j * focal - k * v
+            oblique = 1.0 - facing * facing / ((u * u + v * v) / (focal * focal) + 1.0)
+            c = cosine[y, x]
+            squared = c * c if c > 0.0 else 0.0
+            squared = min(max(squared, min(oblique + margin, 0.98)), 1.0 - 1e-6)
+            scale = 1.0 / (size * size * (1.0 - squared))
+            out[0, y, x] = (squared * (focal * focal + u * u) - a * a) * scale
+            out[1, y, x] = (squared * u * v - a * b) * scale
+            out[2, y, x] = (squared * (focal * focal + v * v) - b * b) * scale
+            out[3, y, x] = -a / size
+            out[4, y, x] = -b / size
+
+
+@njit(cache=True, nogil=True)
+def planes(nearness, labels, flat, tolerance, rounds, sums, out):
+    """The plane nearness = a u + b v + c of each region that ``flat`` names, by reweighted least squares.
+
+    Parameters: ``nearness`` float32 (H, W), NaN unknown; ``tolerance`` in parts of nearness, beyond which a
+    pixel counts little; ``sums`` float64 (N + 1, 10), work space; ``out`` float64 (N + 1, 4): a, b, c and 1 if
+    found. u and v count from the image's middle in its widths.
+    """
+    rows, columns = nearness.shape
+    for turn in range(rounds):
+        sums[:] = 0.0
+        for y in range(rows):
+            v = (y - 0.5 * rows) / columns
+            for x in range(columns):
+                label = labels[y, x]
+                if label == 0 or not flat[label]:
+                    continue
+                z = nearness[y, x]
+                if not z > 0.0:
+                    continue
+                u = x / columns - 0.5
+                w = 1.0
+                if turn > 0:
+                    o = out[label]
+                    r = ((o[0] * u + o[1] * v + o[2]) / z - 1.0) / tolerance
+                    w = 1.0 / (1.0 + r * r) ** 2
+                s = sums[label]
+                s[0] += w * u * u
+                s[1] += w * u * v
+                s[2] += w * u
+                s[3] += w * v * v
+                s[4] += w * v
+                s[5] += w
+                s[6] += w * u * z
+                s[7] += w * v * z
+                s[8] += w * z
+                s[9] += 1.0
+        for label in range(1, out.shape[0]):
+            s, o = sums[label], out[label]
+            if s[9] < 12.0 or not s[5] > 1e-9:
+                o[3] = 0.0
+                continue
+            n = s[5]
+            mu, mv, mz = s[2] / n, s[4] / n, s[8] / n
+            uu, uv, vv = s[0] / n - mu * mu + 1e-9, s[1] / n - mu * mv, s[3] / n - mv * mv + 1e-9
+            uz, vz = s[6] / n - mu * mz, s[7] / n - mv * mz
+            det = uu * vv - uv * uv
+            o[0] = (vv * uz - uv * vz) / det
+            o[1] = (uu * vz - uv * uz) / det
+            o[2] = mz - o[0] * mu - o[1] * mv
+            o[3] = 1.0
 
 
 @njit(cache=True, nogil=True)

@@ -7,6 +7,7 @@ from pydantic import Field
 
 from visint.arrays import Array, Confidence, Image, Mask
 from visint.module import Context, Module, Params, Ports
+from visint_shading.lighting.rays import cosines
 from visint_shading.photometry import Photometry, ShadingInputs, photometry_of
 from visint_shading.reflectance.several import several_albedos
 
@@ -70,5 +71,4 @@ def _shade(found: Photometry) -> Array:
     """The map's cosine of incidence; 1 where it is not known."""
     if found.orientation is None or found.light is None:
         return np.ones(found.seen.labels.shape, np.float32)
-    cosine = (found.orientation.normals * found.light).sum(axis=-1)
-    return np.where(np.isfinite(cosine), cosine, 0).astype(np.float32)
+    return np.nan_to_num(cosines(found.orientation.normals, found.light))

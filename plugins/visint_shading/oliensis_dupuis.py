@@ -11,6 +11,7 @@ from visint.arrays import Array, Mask
 from visint.fields import NormalsEvidence, ReliefEvidence
 from visint.module import Context, Module, Params, Ports
 from visint_shading.heights.relief import Relief, relief_of
+from visint_shading.lighting.rays import cosines
 from visint_shading.photometry import Photometry, ShadingInputs, photometry_of
 from visint_shading.premises import PREMISES, tell
 from visint_shading.slope import angle_error
@@ -104,7 +105,7 @@ def _confirmed(found: Photometry, relief: Relief) -> Array:
     labels = found.seen.labels
     if found.orientation is None:
         return np.ones(found.trust.size)
-    cosine = (relief.normals * found.orientation.normals).sum(axis=-1)
+    cosine = cosines(relief.normals, found.orientation.normals)
     there = (labels > 0) & np.isfinite(cosine)
     count = np.bincount(labels[there], minlength=found.trust.size)
     angle = np.arccos(np.clip(cosine[there], -1, 1))

@@ -11,12 +11,13 @@ from visint.fields import Camera, Light
 from visint.module import Ports
 from visint_shading.brightness.seen import Seen, seen
 from visint_shading.lighting.estimate import LightFit, estimated
-from visint_shading.lighting.rays import light_directions
+from visint_shading.lighting.rays import cosines, light_directions
 from visint_shading.reflectance.albedo import Albedo, albedo_by_region, given_by_region
 from visint_shading.reflectance.judgement import Agreement, agreement_of, trust_of
+from visint_shading.surface.flat import flat_regions, with_planes
 from visint_shading.surface.orientation import Orientation, from_depth, from_normals
 
-__all__ = ["Photometry", "ShadingInputs", "photometry_of"]
+__all__ = ["Photometry", "ShadingInputs", "estimated_light", "photometry_of"]
 
 UNTESTED = 0.3
 """Trust where there is no surface to hold brightness against."""
@@ -68,16 +69,15 @@ class Photometry(NamedTuple):
 
 def photometry_of(inputs: ShadingInputs, window: float) -> Photometry:
     """Albedo, incidence and trust of ``inputs``; ``window`` is that of the map's normals, pixels."""
-    rows, columns = inputs.image.shape
-    camera = inputs.camera or Camera.uncalibrated(columns, rows)
-    view = seen(inputs.image, inputs.regions, inputs.boundaries, window / 6)
-    surface = _surface(inputs, view.labels, camera, window)
+    camera = _camera(inputs)
+    view, window = _view(inputs, window)
+    surface = _surface(inputs, view, camera, window)
     fit = _light(inputs, view, surface)
     directions = None if fit is None else light_directions(fit.light, inputs.depth, camera)
     ambient = inputs.ambient if inputs.ambient is not None else (fit.ambient if fit else 0.0)
     cosine = None
     if surface is not None and directions is not None:
-        cosine = (surface.normals * directions).sum(axis=-1)
+        cosine = cosines(surface.normals, directions)
     albedo = _albedo(inputs.albedo, view, cosine, ambient)
     found = None
     if cosine is not None:
@@ -97,11 +97,29 @@ def photometry_of(inputs: ShadingInputs, window: float) -> Photometry:
     )
 
 
-def _surface(inputs: ShadingInputs, labels: Array, camera: Camera, window: float) -> Orientation | None:
+def estimated_light(inputs: ShadingInputs, window: float) -> LightFit | None:
+    """The light that is given, or the one that explains the view; None if none does."""
+    view, window = _view(inputs, window)
+    return _light(inputs, view, _surface(inputs, view, _camera(inputs), window))
+
+
+def _camera(inputs: ShadingInputs) -> Camera:
+    rows, columns = inputs.image.shape
+    return inputs.camera or Camera.uncalibrated(columns, rows)
+
+
+def _view(inputs: ShadingInputs, window: float) -> tuple[Seen, float]:
+    """The view, and the window widened with its noise: what is noise here makes stereo noisier still."""
+    view = seen(inputs.image, inputs.regions, inputs.boundaries, window / 6)
+    return view, window * (1 + 10 * view.noise)
+
+
+def _surface(inputs: ShadingInputs, view: Seen, camera: Camera, window: float) -> Orientation | None:
     if inputs.depth is not None:
-        return from_depth(inputs.depth, inputs.depth_confidence, labels, camera, window)
+        surface = from_depth(inputs.depth, inputs.depth_confidence, view.labels, camera, window)
+        return with_planes(surface, inputs.depth, view.labels, flat_regions(view.even, view.labels), camera)
     if inputs.normals is not None:
-        return from_normals(inputs.normals, labels, window)
+        return from_normals(inputs.normals, view.labels, window)
     return None
 
 

@@ -32,11 +32,33 @@ def evened(values: Array, weight: Array, labels: Array, length: float) -> tuple[
     from visint_shading import _kernels
 
     both = np.concatenate([values, weight[None]]).astype(np.float32)
-    if length >= 0.3:
-        _kernels.evened(labels, _decays(length), both)
+    if length >= 0.3 and min(labels.shape) > 0:
+        down, across = _joined(labels), _joined(labels.T)
+        for decay in _decays(length):  # along rows as along columns of the transposed: there pixels go abreast
+            _kernels.evened(down, decay, both)
+            both = _turned(both)
+            _kernels.evened(across, decay, both)
+            both = _turned(both)
     sure = both[-1]
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(sure > 1e-4, both[:-1] / sure, np.float32(np.nan)), sure
+
+
+def _turned(planes: Array) -> Array:
+    """(C, W, H) of (C, H, W)."""
+    import cv2
+
+    found = np.empty((planes.shape[0], planes.shape[2], planes.shape[1]), np.float32)
+    for plane, into in zip(planes, found, strict=True):
+        cv2.transpose(plane, dst=into)
+    return found
+
+
+def _joined(labels: Array) -> Array:
+    """float32 (H, W): 1 where a pixel has the label of the one above it."""
+    same = np.zeros(labels.shape, np.float32)
+    same[1:] = labels[1:] == labels[:-1]
+    return same
 
 
 def _decays(length: float) -> Array:

@@ -20,13 +20,15 @@ class Seen(NamedTuple):
     """Brightness inside regions.
 
     ``labels``: int32 (H, W), 0 where nothing is said. ``even``: float32 (H, W), brightness freed from noise,
-    NaN at label 0. ``noise``: its standard deviation in the image; ``spread``: what is left of it in ``even``.
+    NaN at label 0. ``noise``: its standard deviation in the image; ``spread``: what is left of it in ``even``;
+    ``length``: the window's standard deviation, pixels.
     """
 
     labels: Array
     even: Array
     noise: float
     spread: float
+    length: float
 
     @property
     def regions(self) -> int:
@@ -50,4 +52,4 @@ def seen(image: Array, regions: Array | None, boundaries: Array | None, span: fl
     left = noise * gain(length)
     with np.errstate(invalid="ignore"):
         labels = np.where(even > 0.02 + noise, labels, 0).astype(np.int32)
-    return Seen(labels, np.where(labels > 0, even, np.float32(np.nan)), noise, left)
+    return Seen(labels, np.where(labels > 0, even, np.float32(np.nan)), noise, left, length)

@@ -12,6 +12,7 @@ from visint.fields.geometry import pixel_grid, slopes_from_depth
 from visint_shading.heights.gradients import conics, square_to_light
 from visint_shading.heights.propagation import propagated
 from visint_shading.heights.singular import Singular, bends_of, singular_points
+from visint_shading.lighting.rays import cosines
 from visint_shading.photometry import Photometry
 from visint_shading.surface.cone import onto_cone
 
@@ -72,8 +73,18 @@ def _known(
     members = np.bincount(group[there], minlength=count)
     mean = np.bincount(group[there], above[there], minlength=count) / np.maximum(members, 1)
     slopes = _slopes(found.orientation.normals, found.camera) - slopes_from_depth(level.astype(np.float32))
-    bend = bends_of(group, found.seen.labels, slopes, reach)
+    bend = bends_of(group, found.seen.labels, slopes, reach) * _facing(found, group, count)
     return np.where(members > 0, mean, np.nan), bend
+
+
+def _facing(found: Photometry, group: Array, count: int) -> Array:
+    """Bool by group: the map too says that it faces the light, within 16°."""
+    assert found.orientation is not None
+    assert found.light is not None
+    cosine = cosines(found.orientation.normals, found.light)
+    there = (group > 0) & np.isfinite(cosine)
+    members = np.bincount(group[there], minlength=count)
+    return np.asarray(np.bincount(group[there], cosine[there], minlength=count) > 0.96 * np.maximum(members, 1))
 
 
 def _slopes(normals: Array, camera: Camera) -> Array:
@@ -89,6 +100,6 @@ def _normals(depth: Array, labels: Array, found: Photometry) -> Array:
     """Direction from the relief's own slopes, magnitude from brightness."""
     from visint_shading.surface.orientation import from_depth
 
-    surface = from_depth(depth.astype(np.float32), None, labels, found.camera, 0.0)
+    surface = from_depth(depth.astype(np.float32), None, labels, found.camera, found.seen.length)
     assert found.light is not None
     return onto_cone(surface.normals, found.light, found.incidence)[0]

@@ -16,7 +16,9 @@ __all__ = ["LightFit", "estimated"]
 PIXELS = 6000
 ROUNDS = 6
 GROUPS = 8
-LARGEST_ANGLE = 0.35
+WORTH = 0.7
+"""An ambient part must leave at most so much of what is left without it."""
+LARGEST_ANGLE = 0.2
 """Radians. With a standard error of this size nothing is trusted any more."""
 
 
@@ -50,17 +52,21 @@ def estimated(view: Seen, surface: Orientation) -> LightFit | None:
         return None
     bare, rest = _fit(sample, ambient=False)
     full, less = _fit(sample, ambient=True)
-    strength = float(np.linalg.norm(full[:3]))
-    better = less < 0.6 * rest and 0.03 < full[3] / max(strength, 1e-6) < 1.5
+    better = less < WORTH * rest and 0.03 < full[3] < 1.5
     found, left = (full, less) if better else (bare, rest)
-    length = float(np.linalg.norm(found[:3]))
-    if not length > 1e-6 or found[2] >= 0:
+    if not float(np.linalg.norm(found[:3])) > 0.5 or found[2] >= 0:
         return None
-    sigma = _standard_error(sample, found, ambient=better)
+    undecided = _angle(bare[:3], full[:3]) * np.clip(1.25 * (1 - less / max(rest, 1e-12)), 0, 1) * (not better)
+    sigma = float(np.hypot(_standard_error(sample, found, ambient=better), undecided))
     explained = 1 - left / max(_without_shape(sample), 1e-9)
     trust = np.clip((explained - 0.5) / 0.35, 0, 1) * np.clip(1.5 - 1.5 * sigma / LARGEST_ANGLE, 0, 1)
     x, y, z = (float(part) for part in found[:3])
-    return LightFit(Light.distant(x, y, z), float(found[3] / length) if better else 0.0, sigma, float(trust))
+    return LightFit(Light.distant(x, y, z), float(found[3]) if better else 0.0, sigma, float(trust))
+
+
+def _angle(one: Array, other: Array) -> float:
+    lengths = float(np.linalg.norm(one) * np.linalg.norm(other))
+    return float(np.arccos(np.clip(one @ other / max(lengths, 1e-9), -1, 1)))
 
 
 def _sample(view: Seen, surface: Orientation) -> _Sample:
@@ -89,13 +95,16 @@ def _fit(sample: _Sample, ambient: bool) -> tuple[Array, float]:
     light, albedo = np.array([0, 0, -1, 0.0]), _albedos(sample, np.ones(sample.brightness.size))
     weight = np.ones(sample.brightness.size)
     for _ in range(ROUNDS):
-        scaled = sample.brightness / albedo[sample.region]
-        light = _solved(rows, scaled, weight)
-        light = light / max(float(np.linalg.norm(light[:3])), 1e-9)
-        shade = np.maximum(rows @ light, 0.02)
-        albedo = _albedos(sample, shade, weight)
-        weight = 1 / (1 + ((sample.brightness / albedo[sample.region] - shade) / 0.15) ** 2) ** 2
+        scaled = sample.brightness / albedo[sample.region] light = _solved(rows, scaled, weight) light = light /
+        max(float(np.linalg.norm(light[:3])), 1e-9) shade = np.maximum(rows @ light, 0.02) albedo =
+        _albedos(sample, shade, weight) weight = _weights(sample, shade, albedo) * (rows[:, :3] @ light[:3] >
+        0.1)  # the rest is in its own shadow
     return light, _left(sample, shade, albedo)
+
+
+def _weights(sample: _Sample, shade: Array, albedo: Array) -> Array:
+    """Geman and McClure's: what is off by more than 0.15 of the albedo counts little."""
+    return np.asarray(1 / (1 + ((sample.brightness / albedo[sample.region] - shade) / 0.15) ** 2) ** 2)
 
 
 def _left(sample: _Sample, shade: Array, albedo: Array) -> float:
@@ -124,11 +133,25 @@ def _standard_error(sample: _Sample, found: Array, ambient: bool) -> float:
     rows = sample.rows if ambient else sample.rows * (1, 1, 1, 0)
     albedo = _albedos(sample, np.maximum(rows @ found, 0.02))
     scaled = sample.brightness / albedo[sample.region]
-    weight = 1 / (1 + ((scaled - np.maximum(rows @ found, 0.02)) / 0.15) ** 2) ** 2
-    towards = found[:3] / np.linalg.norm(found[:3])
+    weight = _weights(sample, np.maximum(rows @ found, 0.02), albedo)
     squares = 0.0
     for group in range(GROUPS):
         without = _solved(rows, scaled, weight * (sample.group != group))[:3]
-        cosine = without @ towards / max(float(np.linalg.norm(without)), 1e-9)
-        squares += float(np.arccos(np.clip(cosine, -1, 1))) ** 2
-    return float(np.sqrt(squares * (GROUPS - 1) / GROUPS))
+        squares += _angle(without, found[:3]) ** 2
+    return float(np.sqrt(squares * (GROUPS - 1) / GROUPS + _left_open(sample, weight, found[:3])))
+
+
+def _left_open(sample: _Sample, weight: Array, light: Array) -> float:
+    """Squared radians that no part of the view decides, as where all normals of a region lie in a plane.
+
+    What errors of the normals (0.05 rad) make of the light in the direction, square to it, of which brightness
+    says least once each region's albedo is free.
+    """
+    normals = sample.rows[:, :3]
+    shade = np.maximum(normals @ light, 0.02)
+    norm = np.maximum(np.bincount(sample.region, weight * shade**2), 1e-9)
+    both = [np.bincount(sample.region, weight * shade * normals[:, k]) / norm for k in range(3)]
+    free = normals - shade[:, None] * np.column_stack(both)[sample.region]
+    known = (free * weight[:, None]).T @ free / max(float(weight.sum()), 1e-9)
+    across = np.linalg.svd(light[None])[2][1:]
+    return 0.05**2 * 0.05 / max(float(np.linalg.eigvalsh(across @ known @ across.T)[0]), 1e-5)

@@ -11,6 +11,7 @@ from visint_shading.brightness.evening import evened
 
 __all__ = ["Agreement", "agreement_of", "trust_of"]
 
+FLAT = 0.08
 LEAST_COSINE = 0.3
 """Darker than this, limbs and attached shadows rule; they take no part in the test."""
 
@@ -88,11 +89,14 @@ def trust_of(found: Agreement, albedo: Array) -> Array:
     and the 1992 matcher's depth; see the page on shading.
     """
     own = _ramp(found.correlation, 0.6, 0.85) * (found.bend > 0.04)
-    alike = np.abs(found.ratio / max(found.pooled_ratio, 1e-6) - 1) < 0.2
-    shared = _ramp(np.asarray(found.pooled), 0.5, 0.8) * alike * (found.contrast < 0.08)
+    shared = _ramp(np.asarray(found.pooled), 0.5, 0.8) * _alike(found) * (found.contrast < FLAT)
     even = (1 - _ramp(found.scatter, 0.18, 0.32)) * (1 - _ramp(found.grain, 0.11, 0.2))
     near = 1 - _ramp(np.abs(np.log(np.maximum(albedo, 1e-6) / np.maximum(found.ratio, 1e-6))), 0.15, 0.35)
     return np.asarray(np.maximum(own, shared) * even * near * _ramp(found.windows, 1.0, 4.0))
+
+
+def _alike(found: Agreement) -> Array:
+    return np.asarray(np.abs(found.ratio / max(found.pooled_ratio, 1e-6) - 1) < 0.2)
 
 
 def _ramp(value: Array, low: float, high: float) -> Array:

@@ -47,12 +47,12 @@ def from_depth(
 
 def _normals(slopes: Array, camera: Camera) -> Array:
     """Of slopes of ln Z a pixel: n ∝ (f p, f q, −(1 + x p + y q))."""
+    from visint_shading import _kernels
+
     across, down = pixel_grid(camera)
-    f = np.float32(camera.focal_length)
-    p, q = slopes
-    facing = np.maximum(1 + across * p + down * q, np.float32(1e-3))
-    normal = np.stack([f * p, f * q, -facing], axis=-1)
-    return np.asarray(normal / np.sqrt((normal * normal).sum(axis=-1, keepdims=True)), np.float32)
+    found = np.empty((*slopes.shape[1:], 3), np.float32)
+    _kernels.normals_of_slopes(slopes, across.ravel(), down.ravel(), np.float32(camera.focal_length), found)
+    return found
 
 
 def from_normals(normals: Array, labels: Array, length: float) -> Orientation:

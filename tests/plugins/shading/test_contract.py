@@ -5,6 +5,7 @@ from __future__ import annotations
 from visint.testing import ModuleContract
 from visint_shading.albedo import AlbedoOf
 from visint_shading.incidence import IncidenceOf
+from visint_shading.light import LightOf
 from visint_shading.oliensis_dupuis import OliensisDupuis
 from visint_shading.slope import Slope
 
@@ -15,6 +16,10 @@ class TestAlbedo(ModuleContract):
 
 class TestIncidence(ModuleContract):
     module = IncidenceOf
+
+
+class TestLight(ModuleContract):
+    module = LightOf
 
 
 class TestOliensisDupuis(ModuleContract):
