@@ -51,6 +51,104 @@ def draw_together(lines, weight, reach, moved, sure):
 
 
 @njit(cache=True, nogil=True)
+def step(value, sigma, trust, before, sure, reached, strengths, after, confidence):
+    """One Jacobi step of Eq. 5.48 in disparity, and the Kalman filter of its confidence; float32 (H, W) each.
+
+    What the neighbours predict is as sure as they are on the average, less 1/λ_s.
+    ``strengths``: smoothness λ_s (px⁻²), the least sigma (px), and what a px² of the level is in full size.
+    """
+    rows, columns = before.shape
+    smoothness, sharpest, square = strengths[0], strengths[1], strengths[2]
+    one = np.float32(1)
+    for y in range(rows):
+        for x in range(columns):
+            bits = reached[y, x]
+            total, around, n = np.float32(0), np.float32(0), np.float32(0)
+            for k in range(4):
+                if bits >> k & 1:
+                    v, u = y + (k == 2) - (k == 0), x + (k == 1) - (k == 3)
+                    near = before[v, u]
+                    if near == near:
+                        total += near
+                        n += one
+                        around += sure[v, u]
+            beta = np.float32(0)
+            if trust[y, x] > 0:
+                spread = max(sigma[y, x], sharpest)
+                beta = trust[y, x] / (spread * spread)
+            pull = smoothness * np.float32(0.25) * n
+            if beta + pull > 0:
+                told = beta * value[y, x] if beta > 0 else np.float32(0)
+                after[y, x] = (told + smoothness * np.float32(0.25) * total) / (beta + pull)
+            else:
+                after[y, x] = before[y, x]
+            c = around / n if n > 0 else sure[y, x]
+            predicted = one / c - one if c > 0 else np.float32(np.inf)
+            if n > 0:
+                predicted += square / smoothness
+            precision = one / max(predicted, np.float32(1e-6)) + beta / square
+            confidence[y, x] = precision / (precision + one)
+
+
+@njit(cache=True, nogil=True)
+def bend_down(depth, told, trust, sure, reached, alpha, pixels, after, confidence):
+    """One step of Eq. 5.80 where the bend ``told`` and the map's own differ in sign, as far as ``trust`` goes.
+
+    ``pixels`` is fB times the full size of a pixel of the level: what the step moved, px², counts as doubt.
+    Returns how many moved.
+    """
+    rows, columns = depth.shape
+    half, one, moved = np.float32(0.5), np.float32(1), 0
+    for y in range(rows):
+        for x in range(columns):
+            here = depth[y, x]
+            after[y, x], confidence[y, x] = here, sure[y, x]
+            if not trust[y, x] > 0 or not here == here:
+                continue
+            bits = reached[y, x]
+            bend, axes = np.float32(0), 0
+            if bits & 1 and bits & 4:
+                pair = half * (depth[y - 1, x] + depth[y + 1, x]) - here
+                if pair == pair:
+                    bend += pair
+                    axes += 1
+            if bits & 2 and bits & 8:
+                pair = half * (depth[y, x - 1] + depth[y, x + 1]) - here
+                if pair == pair:
+                    bend += pair
+                    axes += 1
+            if axes == 0:
+                continue
+            bend /= np.float32(axes)
+            if not bend * told[y, x] < 0:
+                continue
+            change = trust[y, x] * (bend - alpha * told[y, x])
+            after[y, x] = here + change
+            moved += 1
+            around, n = np.float32(0), 0
+            for k in range(4):
+                if bits >> k & 1:
+                    around += sure[y + (k == 2) - (k == 0), x + (k == 1) - (k == 3)]
+                    n += 1
+            mixed = around / np.float32(n)
+            off = pixels * change / (here * here)
+            confidence[y, x] = mixed / (one + mixed * off * off) if mixed > 0 else np.float32(0)
+    return moved
+
+
+@njit(cache=True, nogil=True)
+def slopes_of(normals, depth, focal, cx, cy, slopes):
+    """Slopes per pixel (H, W, 2) of a surface at ``depth`` with these ``normals``; NaN where seen from behind."""
+    rows, columns = depth.shape
+    for y in range(rows):
+        for x in range(columns):
+            a, b, c = normals[y, x, 0], normals[y, x, 1], normals[y, x, 2]
+            facing = (a * (np.float32(x) - cx) + b * (np.float32(y) - cy)) / focal + c
+            scale = -depth[y, x] / (focal * facing) if facing < 0 else np.float32(np.nan)
+            slopes[y, x, 0], slopes[y, x, 1] = a * scale, b * scale
+
+
+@njit(cache=True, nogil=True)
 def _applied(field, beta, reached, weight, out):
     """out = (β + Σ w) field - Σ w field of the linked neighbours: the normal equations of Eq. 5.47."""
     rows, columns = field.shape

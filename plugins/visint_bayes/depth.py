@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
@@ -12,7 +12,7 @@ from visint.arrays import Depth as DepthMap
 from visint.fields import Camera, DepthEvidence, DisparityEvidence, barriers
 from visint.fields.geometry import depth_from_disparity, disparity_evidence
 from visint.module import Context, Module, Params, Ports
-from visint_bayes.sureness import confidence_of, disparity_of, variance_of
+from visint_bayes.sureness import disparity_of
 
 __all__ = ["Depth"]
 
@@ -65,8 +65,8 @@ class Depth(Module[DepthParams, DepthInputs, DepthOutputs]):
     unit with λ (in depth it has not). Missing neighbours take their share of λ away, as the derivatives of
     Eqs. 5.39 and 5.40 do; where neither evidence nor neighbour speaks, the map stays.
 
-    The confidence is that of the Kalman filter whose gain this is: what the neighbours predict has their mean
-    variance v̄ + 1/λ, the evidence R = σ²/reliability, and the new variance is 1/(1/(v̄ + 1/λ) + 1/R). So it
+    The confidence is that of the Kalman filter whose gain this is: what the neighbours predict has the variance
+    v̄ + 1/λ (v̄ that of their mean confidence), the evidence R = σ²/reliability, and the new variance is 1/(1/(v̄ + 1/λ) + 1/R). So it
     grows by 1/λ a pixel away from evidence, and twenty looks at the same images do not pass for twenty
     measurements.
     """
@@ -76,77 +76,40 @@ class Depth(Module[DepthParams, DepthInputs, DepthOutputs]):
 
     def run(self, inputs: DepthInputs, ctx: Context) -> DepthOutputs:
         """The map after this cue."""
+        from visint_bayes import _kernels
+
         ctx.check()
         rows, columns = inputs.depth.shape
         camera = inputs.camera or Camera.uncalibrated(columns, rows)
+        said = _evidence(inputs, camera)
         before = disparity_of(inputs.depth, camera)
-        said, beta = self._evidence(inputs, camera)
-        around = Around.of(before, inputs.boundaries)
-        after = self._moved(_Terms(said, beta, before, around), ctx)
+        reached = barriers.links_within(inputs.boundaries, before)
+        sure = np.zeros_like(before) if inputs.depth_confidence is None else inputs.depth_confidence
+        after, confidence = np.empty_like(before), np.empty_like(before)
+        strengths = np.array([self.params.smoothness, self.params.sharpest, ctx.scale**2], np.float32)
+        _kernels.step(said.value, said.sigma, said.reliability, before, sure, reached, strengths, after, confidence)
+        if self.params.solve == "solved":
+            after = self._solved(said, before, reached, ctx)
         depth = depth_from_disparity(after, camera)
-        kept = np.where(np.isnan(depth), inputs.depth, depth)
-        return DepthOutputs(depth=kept, depth_confidence=self._confidence(inputs, beta, around, ctx.scale))
+        return DepthOutputs(depth=np.where(np.isnan(depth), inputs.depth, depth), depth_confidence=confidence)
 
-    def _evidence(self, inputs: DepthInputs, camera: Camera) -> tuple[Array, Array]:
-        """(disparity, β) with 0 for what is not said."""
-        evidence = inputs.disparity_evidence
-        if evidence is None and inputs.depth_evidence is not None:
-            evidence = disparity_evidence(inputs.depth_evidence, camera)
-        if evidence is None:
-            nothing = np.zeros(inputs.depth.shape, np.float32)
-            return nothing, nothing
-        speaks = evidence.reliability > 0
-        sigma = np.maximum(np.where(speaks, evidence.sigma, np.float32(1)), np.float32(self.params.sharpest))
-        return np.where(speaks, evidence.value, np.float32(0)), evidence.reliability / (sigma * sigma)
-
-    def _moved(self, terms: _Terms, ctx: Context) -> Array:
-        weight = np.float32(self.params.smoothness / 4)
-        if self.params.solve == "step":
-            pull = weight * terms.around.number
-            total = terms.beta + pull
-            mean = np.where(terms.around.number > 0, terms.around.mean, np.float32(0))
-            with np.errstate(divide="ignore", invalid="ignore"):
-                moved = (terms.beta * terms.said + pull * mean) / total
-            return np.where(total > 0, moved, terms.before)
+    def _solved(self, said: DisparityEvidence, before: Array, reached: Array, ctx: Context) -> Array:
         from visint_bayes import _kernels
 
-        after = np.where(np.isnan(terms.before), terms.said, terms.before)
-        reached = terms.around.reached
-        steps = _kernels.solve(terms.said, terms.beta, reached, weight, self.params.tolerance, after)
+        speaks = said.reliability > 0
+        sigma = np.maximum(np.where(speaks, said.sigma, np.float32(1)), np.float32(self.params.sharpest))
+        value = np.where(speaks, said.value, np.float32(0))
+        after = np.where(np.isnan(before), value, before)
+        numbers = (np.float32(self.params.smoothness / 4), self.params.tolerance)
+        steps = _kernels.solve(value, said.reliability / (sigma * sigma), reached, *numbers, after)
         ctx.measure("steps", steps)
         return after
 
-    def _confidence(self, inputs: DepthInputs, beta: Array, around: Around, scale: int) -> Array:
-        """The map's confidence after the filter's step; variances in full-size px²."""
-        square = np.float32(scale * scale)
-        sure = inputs.depth_confidence
-        variance = variance_of(np.zeros_like(inputs.depth) if sure is None else sure)
-        mean, count = barriers.mean(np.where(np.isinf(variance), np.float32(1e12), variance), around.reached)
-        predicted = np.where(count > 0, mean + square / np.float32(self.params.smoothness), variance)
-        with np.errstate(divide="ignore"):
-            precision = 1 / predicted + beta / square
-            return confidence_of(1 / precision)
 
-
-class Around(NamedTuple):
-    """The four neighbours on the same side: ``mean`` (NaN without any), their ``number``, and the links."""
-
-    mean: Array
-    number: Array
-    reached: Array
-
-    @classmethod
-    def of(cls, field: Array, boundaries: Array | None) -> Around:
-        """Of ``field`` float32 (H, W)."""
-        reached = barriers.links_within(boundaries, field)
-        mean, number = barriers.mean(field, reached)
-        return cls(mean, number, reached)
-
-
-class _Terms(NamedTuple):
-    """What the new disparity is made of, float32 (H, W) each."""
-
-    said: Array
-    beta: Array
-    before: Array
-    around: Around
+def _evidence(inputs: DepthInputs, camera: Camera) -> DisparityEvidence:
+    """What is said, as disparity; silent where nothing came."""
+    if inputs.disparity_evidence is not None:
+        return inputs.disparity_evidence
+    if inputs.depth_evidence is not None:
+        return disparity_evidence(inputs.depth_evidence, camera)
+    return DisparityEvidence.of(np.full(inputs.depth.shape, np.nan, np.float32), 1.0, 0.0)

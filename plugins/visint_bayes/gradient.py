@@ -7,9 +7,7 @@ from pydantic import Field
 
 from visint.arrays import Array, Boundaries, Confidence, Depth
 from visint.fields import Camera, Evidence, NormalsEvidence, ReliefEvidence, SlopesEvidence, barriers
-from visint.fields.geometry import slopes_from_normals
 from visint.module import Context, Module, Params, Ports
-from visint_bayes.sureness import confidence_of, depth_per_pixel, variance_of
 
 __all__ = ["Gradient"]
 
@@ -64,47 +62,33 @@ class Gradient(Module[GradientParams, GradientInputs, GradientOutputs]):
 
     def run(self, inputs: GradientInputs, ctx: Context) -> GradientOutputs:
         """The map after this cue: one step."""
+        from visint_bayes import _kernels
+
         ctx.check()
-        reached = barriers.links_within(inputs.boundaries, inputs.depth)
-        told, trust = _told(inputs, reached)
-        bend = barriers.bend(inputs.depth, reached)
-        against = (told * bend < 0) & np.isfinite(inputs.depth)
-        step = np.where(against, trust * (bend - np.float32(self.params.alpha) * told), np.float32(0))
-        ctx.measure("against", float(against.mean()))
-        sure = _confidence(inputs, step, reached, ctx.scale)
-        return GradientOutputs(depth=inputs.depth + step, depth_confidence=sure)
+        depth, sure = inputs.depth, inputs.depth_confidence
+        sure = np.zeros_like(depth) if sure is None else sure
+        evidence = inputs.relief_evidence or inputs.slopes_evidence or inputs.normals_evidence
+        if evidence is None or not evidence.reliability.any():
+            return GradientOutputs(depth=depth, depth_confidence=sure)
+        camera = inputs.camera or Camera.uncalibrated(depth.shape[1], depth.shape[0])
+        reached = barriers.links_within(inputs.boundaries, depth)
+        told = _bend(evidence, depth, camera, reached)
+        after, confidence = np.empty_like(depth), np.empty_like(depth)
+        numbers = (np.float32(self.params.alpha), np.float32(ctx.scale * camera.focal_length * camera.baseline))
+        moved = _kernels.bend_down(depth, told, evidence.reliability, sure, reached, *numbers, after, confidence)
+        ctx.measure("against", moved / depth.size)
+        return GradientOutputs(depth=after, depth_confidence=confidence)
 
 
-def _told(inputs: GradientInputs, reached: Array) -> tuple[Array, Array]:
-    """(the cue's bend, its reliability); no bend where it says nothing."""
-    rows, columns = inputs.depth.shape
-    evidence: Evidence | None = None
-    bend = np.zeros(inputs.depth.shape, np.float32)
-    if inputs.relief_evidence is not None:
-        evidence = inputs.relief_evidence
-        bend = barriers.bend(evidence.value, reached)
-    elif inputs.slopes_evidence is not None:
-        evidence = inputs.slopes_evidence
-        bend = barriers.bend_of_slopes(evidence.value, reached)
-    elif inputs.normals_evidence is not None:
-        evidence = inputs.normals_evidence
-        camera = inputs.camera or Camera.uncalibrated(columns, rows)
-        bend = barriers.bend_of_slopes(slopes_from_normals(inputs.depth, evidence.value, camera), reached)
-    trust = bend if evidence is None else evidence.reliability
-    return np.nan_to_num(bend, nan=0.0), trust
+def _bend(evidence: Evidence, depth: Array, camera: Camera, reached: Array) -> Array:
+    """The quarter-Laplacian of the cue's surface; NaN where it is not known."""
+    from visint_bayes import _kernels
 
-
-def _confidence(inputs: GradientInputs, step: Array, reached: Array, scale: int) -> Array:
-    """What the step moved counts as doubt; where nothing moved, all stays."""
-    rows, columns = inputs.depth.shape
-    before = inputs.depth_confidence
-    if before is None:
-        return np.zeros((rows, columns), np.float32)
-    camera = inputs.camera or Camera.uncalibrated(columns, rows)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        moved = np.float32(scale) * step / depth_per_pixel(inputs.depth, camera)
-    around, count = barriers.mean(before, reached)
-    mixed = np.where(count > 0, around, before)
-    with np.errstate(over="ignore"):
-        doubted = confidence_of(variance_of(mixed) + moved * moved)
-    return np.where(step != 0, doubted, before)
+    if isinstance(evidence, ReliefEvidence):
+        return barriers.bend(evidence.value, reached)
+    if isinstance(evidence, SlopesEvidence):
+        return barriers.bend_of_slopes(evidence.value, reached)
+    slopes = np.empty((*depth.shape, 2), np.float32)
+    focal, cx, cy = (np.float32(each) for each in (camera.focal_length, camera.cx, camera.cy))
+    _kernels.slopes_of(evidence.value, depth, focal, cx, cy, slopes)
+    return barriers.bend_of_slopes(slopes, reached)

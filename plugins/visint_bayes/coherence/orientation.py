@@ -72,6 +72,9 @@ class CohereNormals(Module[CohereNormalsParams, CohereNormalsInputs, CohereNorma
         """Evidence of the images' size; it may speak where the cue itself did not, and its neighbours do."""
         ctx.check()
         evidence = _oriented(inputs)
+        if not evidence.reliability.any():
+            nobody = np.ones(inputs.depth.shape, np.float32)
+            return CohereNormalsOutputs(evidence=evidence, beta=nobody, kappa=nobody)
         known = inputs.normals if inputs.normals is not None else np.full_like(evidence.value, np.nan)
         opinions = Opinions(evidence.value, evidence.value, known, evidence.reliability, evidence.sigma)
         verdict = validated(opinions, inputs.boundaries, NEIGHBOURS, self.params.rho)
