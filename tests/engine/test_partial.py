@@ -43,7 +43,7 @@ class TestStopAfter:
         ("node", "outputs"),
         [
             ("before", {"before": 4}),
-            ("count", {"before": 4, "within": 14}),
+            ("count", {"before": 4, "within": 14, "count_value": 7}),
             ("within", {"before": 4, "within": 14}),
             ("after", {"before": 4, "within": 14, "after": 14}),
             ("last", {"before": 4, "within": 14, "after": 14, "last": 28}),
@@ -55,6 +55,14 @@ class TestStopAfter:
         assert dict(result) == outputs
         loops = {"count": ["turns"], "within": ["turns"], "after": ["turns"], "last": ["turns", "later"]}
         assert [stop.loop for stop in result.stops] == loops.get(node, [])
+
+    def test_what_the_node_gives_is_among_the_outputs(self, stage, image):
+        """Each of its ports, though the graph itself does not give them; a spoke's evidence too."""
+        result = stage.run(LINE, {"x": 2.0}, stop_after="count")
+        assert result.kinds["count_value"] == "Scalar"
+        result = stage.run(HUB, {"left": image}, stop_after="a")
+        np.testing.assert_allclose(result["a_evidence"], 1.0)
+        assert result.kinds["a_evidence"] == "Depth"
 
     def test_runs_nothing_more(self, stage):
         stage.run(LINE, {"x": 2.0}, stop_after="within")

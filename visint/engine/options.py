@@ -27,7 +27,8 @@ class Options:
         1 runs node after node; more lets nodes that do not wait for each other run side by side. The
         results are the same bits.
     stop_after
-        The name of a node after which the run ends; loops around it run to their end.
+        The name of a node after which the run ends; loops around it run to their end. What the node gives is
+        among the outputs, as ``NODE_PORT``.
     start
         Fields of the map to start from, by name, at full size: a warm start. ``<field>_confidence`` too.
     observers

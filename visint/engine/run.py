@@ -20,6 +20,7 @@ from visint.engine.warm import accept_start
 from visint.events import Observer, RunFinished, RunStarted
 from visint.fields.evidence import Evidence
 from visint.graph import Graph, load
+from visint.graph.ending import ending_at
 from visint.results import Result, gather
 from visint.schedule import Block, Repeat, Schedule, Step, compile_graph
 
@@ -60,8 +61,8 @@ def run(
     Cancelled
         If ``options.cancel`` was set.
     """
-    graph = load(graph)
     options = options or Options()
+    graph = ending_at(load(graph), options.stop_after) if options.stop_after else load(graph)
     values = accept(graph, {**(inputs or {}), **named})
     schedule = compile_graph(graph)
     threaded = options.threads > 1

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any, TypeVar
 
-from visint.errors import GraphError, Problem
+from visint.errors import GraphError, Problem, Where
 from visint.graph.bind import bind
 from visint.graph.callees import COMMIT
 from visint.graph.graph import MAP, Graph
@@ -44,10 +46,30 @@ def alter(
     """
     asked = {**(_control(graph.spec, control) if control is not None else {}), **(settings or {})}
     if asked:
-        graph = _bound(graph, _set(graph.spec, asked))
+        graph = _with_settings(graph, asked)
     for spoke in without:
         graph = _bound(graph, _without(graph.plain_spec, spoke))
     return graph
+
+
+def _with_settings(graph: Graph, asked: Settings) -> Graph:
+    """What is wrong with a setting is told of the setting: no file holds it."""
+    spec = _set(graph.spec, asked)
+    try:
+        return _bound(graph, spec)
+    except GraphError as error:
+        raise GraphError(_of_setting(problem, asked) for problem in error.problems) from None
+
+
+def _of_setting(problem: Problem, asked: Settings) -> Problem:
+    path = problem.where.path.split(".")
+    for key, value in asked.items():
+        name, _, param = key.partition(".")
+        owner = name.removesuffix("_cohere").removesuffix("_reconcile")
+        if path[-1] == param and (name in path or owner in path):
+            write = re.sub(r"^(\w+): ", rf"{name}.\1=", problem.write)
+            return replace(problem, where=Where(f"{key}={value}"[:100]), write=write, fault="usage")
+    return problem
 
 
 def _bound(graph: Graph, spec: GraphSpec) -> Graph:
