@@ -84,6 +84,33 @@ def test_a_changed_file_is_told(visint, pair, tmp_path):
     assert "inputs.left" not in done.err
 
 
+def test_the_graphs_that_it_calls_are_kept(visint, pair, tmp_path, files, monkeypatch):
+    """A graph that calls another one is repeated as it was, though that file is now another one, or gone."""
+    from visint.registry import catalog
+
+    folder = tmp_path / "graphs"
+    folder.mkdir()
+    inner = "visint: 1\nname: inner\ninputs: {left: Image, right: Image}\nnodes: {m: {uses: stereo.sgm, in: "
+    inner += "{left: inputs.left, right: inputs.right}}}\noutputs: {disparity: m.disparity}\n"
+    (folder / "inner.yaml").write_text(inner)
+    found = catalog._graph_files()
+    monkeypatch.setattr(catalog, "_graph_files", lambda: {**found, "inner": {"test": folder / "inner.yaml"}})
+    catalog._installed.cache_clear()
+    (tmp_path / "outer.yaml").write_text(
+        "visint: 1\nname: outer\ninputs: {left: Image, right: Image}\nnodes: {c: {uses: 'graph:inner', in: "
+        "{left: inputs.left, right: inputs.right}}}\noutputs: {disparity: c.disparity}\n"
+    )
+    assert visint("run", "outer.yaml", *pair.images, "--out", "one").code == 0
+    monkeypatch.undo()
+    monkeypatch.chdir(tmp_path)
+    catalog._installed.cache_clear()
+    record = json.loads((tmp_path / "one/run.json").read_text())
+    assert record["graphs"]["inner"]["nodes"]["m"]["uses"] == "stereo.sgm"
+    assert visint("run", "one/run.json", "--out", "two").code == 0
+    one, two = files.contents(tmp_path / "one"), files.contents(tmp_path / "two")
+    assert {name for name in one if one[name] != two[name]} <= CHANGES
+
+
 class TestFromPython:
     """A run on arrays left no paths on record."""
 
@@ -116,6 +143,7 @@ class TestSpoilt:
             {"seed": "x"},
             {"seed": None},
             {"graph": []},
+            {"graphs": []},
         ],
     )
     def test_no_record(self, refused, mine, changed):

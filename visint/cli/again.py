@@ -89,7 +89,7 @@ def former(path: Path) -> Former:
     if not _is_record(record):
         raise _no_record(path)
     source = parse_data(record["graph"], str(path))
-    graph = bind(source.spec, installed(), source.places)
+    graph = bind(source.spec, installed().with_recorded(record.get("graphs", {})), source.places)
     inputs = {name: told for name, told in record["inputs"].items() if told.get("sha256") != ABSENT}
     stop_after, start = record.get("stop_after") or "", record.get("start") or {}
     followed = bool(record.get("attribution"))
@@ -100,6 +100,7 @@ def _is_record(record: Any) -> bool:
     return (
         isinstance(record, dict)
         and isinstance(record.get("graph"), dict)
+        and isinstance(record.get("graphs", {}), dict)
         and isinstance(record.get("seed"), int)
         and isinstance(record.get("inputs"), dict)
         and all(isinstance(told, dict) for told in record["inputs"].values())

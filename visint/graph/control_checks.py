@@ -36,7 +36,7 @@ def controls_set_parameters(graph: Graph, draft: Draft) -> Iterator[Problem]:
 
 def _fault(graph: Graph, key: str, value: Any) -> _Fault | None:
     name, _, param = key.partition(".")
-    node = graph.nodes.get(name)
+    node = graph.nodes.get(name) or _step(graph, name)
     if node is None:
         return _no_node(graph, name, param, value)
     known = _parameters(node)
@@ -52,6 +52,13 @@ def _fault(graph: Graph, key: str, value: Any) -> _Fault | None:
         found = f"found {shown(value)}; " + said.replace("Input should be", "should be")
         return _Fault(found, choices, f"{key}: {as_written(known[param])}")
     return None
+
+
+def _step(graph: Graph, name: str) -> Node | None:
+    """A step of a spoke with several kinds of evidence: one node a kind, set together under the spoke's name."""
+    spoke, _, step = name.rpartition("_")
+    found = (node for one, node in graph.nodes.items() if node.of == spoke and one.endswith(f"_{step}"))
+    return next(found, None) if step in ("cohere", "reconcile") else None
 
 
 def _no_node(graph: Graph, name: str, param: str, value: Any) -> _Fault:

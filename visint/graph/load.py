@@ -8,7 +8,7 @@ from pathlib import Path
 from visint.errors import GraphError, Problem
 from visint.graph.bind import bind
 from visint.graph.graph import Graph
-from visint.graph.read import read_graph
+from visint.graph.read import parse_data, read_graph
 from visint.names import did_you_mean, is_name, listed
 from visint.registry import Catalog, installed
 
@@ -42,6 +42,9 @@ def load(source: str | PathLike[str] | Graph, catalog: Catalog | None = None) ->
 
 def load_named(name: str, catalog: Catalog, calling: tuple[str, ...] = ()) -> Graph:
     """The installed graph ``name``; ``calling`` are the graphs being bound around it."""
+    if name in catalog.recorded:
+        source = parse_data(catalog.recorded[name], f"graph:{name}")
+        return bind(source.spec, catalog, source.places, None, (*calling, name))
     return _load_file(find_named(name, catalog), catalog, (*calling, name))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Mapping
+from copy import copy
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -40,6 +41,14 @@ class Catalog:
         self._claims: Mapping[str, Mapping[str, Path]] | None = None
         self._entries: Mapping[str, tuple[Entry, ...]] | None = None
         self._loaded: dict[str, Plugin | PluginError] = {}
+        self.recorded: Mapping[str, Any] = {}
+        """Graphs by name as a run record holds them, taken before files of the name; plain data."""
+
+    def with_recorded(self, graphs: Mapping[str, Any]) -> Catalog:
+        """The same catalog, but for ``graphs``, which are taken from a run record."""
+        other = copy(self)
+        other.recorded = graphs
+        return other
 
     @property
     def plugin_names(self) -> tuple[str, ...]:
@@ -105,7 +114,8 @@ class Catalog:
 
     def graphs(self) -> Mapping[str, Path]:
         """Graph files by name (a file's stem), of every installed folder of graph files."""
-        return {name: next(iter(claims.values())) for name, claims in self._graph_claims().items()}
+        found = {name: next(iter(claims.values())) for name, claims in self._graph_claims().items()}
+        return found | {name: Path(name) for name in self.recorded}
 
     def graph_file(self, name: str) -> Path | None:
         """The file of the graph ``name``, or None if there is none.

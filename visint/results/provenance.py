@@ -53,6 +53,7 @@ def provenance(result: Result, sources: Mapping[str, Source]) -> dict[str, Any]:
         "visint": installed_version("visint"),
         "graph": graph.spec.plain(),
         "graph_hash": _sha(graph.to_yaml().encode()),
+        "graphs": {name: called.spec.plain() for name, called in sorted(dict(_called(graph)).items())},
         "seed": result.seed,
         "stop_after": result.record.stop_after,
         "start": {name: _digest(value) for name, value in result.record.start.items()},
@@ -162,6 +163,14 @@ def modules(graph: Graph) -> dict[str, dict[str, str]]:
     """Version and origin of every module that the graph calls, sub-graphs included, by its id."""
     callees = {callee.id: callee for callee in _callees(graph) if callee.module}
     return {name: {"version": callees[name].version, "from": callees[name].origin} for name in sorted(callees)}
+
+
+def _called(graph: Graph) -> Iterator[tuple[str, Graph]]:
+    """The graphs that it calls, and those that they call, by name."""
+    for node in graph.nodes.values():
+        if node.callee.graph is not None:
+            yield node.callee.id.partition(":")[2], node.callee.graph
+            yield from _called(node.callee.graph)
 
 
 def _callees(graph: Graph) -> Iterator[Callee]:
