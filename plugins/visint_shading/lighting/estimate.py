@@ -95,10 +95,13 @@ def _fit(sample: _Sample, ambient: bool) -> tuple[Array, float]:
     light, albedo = np.array([0, 0, -1, 0.0]), _albedos(sample, np.ones(sample.brightness.size))
     weight = np.ones(sample.brightness.size)
     for _ in range(ROUNDS):
-        scaled = sample.brightness / albedo[sample.region] light = _solved(rows, scaled, weight) light = light /
-        max(float(np.linalg.norm(light[:3])), 1e-9) shade = np.maximum(rows @ light, 0.02) albedo =
-        _albedos(sample, shade, weight) weight = _weights(sample, shade, albedo) * (rows[:, :3] @ light[:3] >
-        0.1)  # the rest is in its own shadow
+        scaled = sample.brightness / albedo[sample.region]
+        light = _solved(rows, scaled, weight)
+        light = light / max(float(np.linalg.norm(light[:3])), 1e-9)
+        shade = np.maximum(rows @ light, 0.02)
+        albedo = _albedos(sample, shade, weight)
+        lit = rows[:, :3] @ light[:3] > 0.1  # the rest is in its own shadow
+        weight = _weights(sample, shade, albedo) * lit
     return light, _left(sample, shade, albedo)
 
 
