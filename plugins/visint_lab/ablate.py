@@ -61,11 +61,8 @@ def _contributed(own: list[Contribution]) -> str:
     from visint_lab.trials.grid import aligned, number
 
     keys = list(own[0].gains)
-    rows = [
-        [one.taken, *(number(one.gains.get(key)) for key in keys), number(100 * one.share) + " %"]
-        for one in own
-    ]
-    return aligned(["", *keys, "decided"], rows)
+    rows = [[one.taken, *(number(one.gains.get(key)) for key in keys), number(100 * one.share)] for one in own]
+    return aligned(["", *keys, "decided, %"], rows)
 
 
 def _pair(name: str, truth: Path | None, size: int) -> tuple[Pair, visint.Light | None]:

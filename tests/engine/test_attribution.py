@@ -10,6 +10,7 @@ from visint.engine import Options, run
 from visint.fields import DepthEvidence
 from visint.graph import parse_graph
 from visint.module import Module, Params, Ports
+from visint.testing.toys import Cue
 
 TWO = """
 inputs: {left: Image}
@@ -104,6 +105,33 @@ outputs: {boundaries: map.boundaries}
         found = stage.run(text, {"left": image}, attribution=True).attribution["depth"]
         assert not found["far"].any()
         np.testing.assert_allclose(found["near"], 1 - 0.6**3, rtol=1e-4)
+
+
+class HalveIn(Ports):
+    depth: Depth[Array, "H W"]
+
+
+class Halve(Module[Params, HalveIn, Cue.Outputs]):
+    """Half of the map's depth, as evidence: it knows nothing but the map."""
+
+    name = "halve"
+
+    def run(self, inputs, ctx):
+        ctx.check()
+        depth = inputs.depth / 2
+        return Cue.Outputs(evidence=DepthEvidence.of(depth, 0.1, 1.0), sharpness=depth)
+
+
+def test_who_knows_nothing_but_the_map_has_no_weight(stage, image):
+    """What a spoke makes of the map stays theirs who brought it, however far it moves the map."""
+    stage.modules(own=[Halve])
+    text = TWO.replace("order: [near, far]", "order: [near, far, halve]")
+    text = text.replace("outputs:", "    halve: {uses: own.halve}\noutputs:")
+    found = stage.run(text, {"left": image}, attribution=True).attribution["depth"]
+    alone = stage.run(TWO, {"left": image}, attribution=True).attribution["depth"]
+    assert set(found) == {"near", "far"}
+    for cue, share in alone.items():
+        np.testing.assert_allclose(found[cue], share, rtol=1e-4)
 
 
 class TestAllEvidenceAtOnce:

@@ -15,7 +15,7 @@ from visint.fields.kinds import KINDS
 from visint.fields.pull import pull
 from visint.fields.snapshot import MapSnapshot
 from visint.graph.callees import BEGIN, COMMIT
-from visint.graph.graph import Edge, Graph, Node
+from visint.graph.graph import INPUTS, Edge, Graph, Node
 
 __all__ = ["Attribution", "Weights"]
 
@@ -26,11 +26,12 @@ _SHARE = KINDS["Confidence"]
 
 
 class _Source(NamedTuple):
-    """Evidence that enters a field: the cue it is of, and the node and port that it comes from."""
+    """Evidence that enters a field: the cue it is of, the node and port it comes from; ``own`` information?"""
 
     cue: str
     node: str
     port: str
+    own: bool
 
 
 class _Entry(NamedTuple):
@@ -57,6 +58,7 @@ class Attribution:
     ``<field>_weights`` of Confidence, one array, or a list with one for each evidence that it was given: in
     the order of its ports as declared, then of each list.
 
+    A spoke that reads nothing but the map has no weight: what it smooths stays theirs who brought it.
     It holds the last evidence of each spoke, and two snapshots a map.
     """
 
@@ -110,17 +112,17 @@ class Attribution:
         self._moments[event.node] = after
 
     def _enter(self, entry: _Entry, before: MapSnapshot, after: _Moment, level: int) -> None:
-        given = [(source.cue, one) for source in entry.sources if (one := self._now(source, level)) is not None]
+        given = [(source, one) for source in entry.sources if (one := self._now(source, level)) is not None]
         shares = self._told(entry, len(given), level)
         if shares is None:
-            shares = [pull(before, after.snapshot, entry.field, one) for _, one in given]
-            shares = _at_most_all(shares)
-        if shares:
+            shares = _at_most_all([pull(before, after.snapshot, entry.field, one) for _, one in given])
+        counted = [(source.cue, share) for (source, _), share in zip(given, shares, strict=True) if source.own]
+        if counted:
             weights = after.weights.setdefault(entry.field, {})
-            left = 1 - np.add.reduce(shares)
+            left = 1 - np.add.reduce([share for _, share in counted])
             for cue in weights:
                 weights[cue] = weights[cue] * left
-            for (cue, _), share in zip(given, shares, strict=True):
+            for cue, share in counted:
                 weights[cue] = weights[cue] + share if cue in weights else share
 
     def _now(self, source: _Source, level: int) -> Evidence | None:
@@ -148,6 +150,31 @@ def _source_of(node: Node) -> str | None:
     return edge.source.node if isinstance(edge, Edge) else None
 
 
+def _brings_its_own(graph: Graph, name: str) -> bool:
+    """Whether a node knows anything but the map: an array among the graph's inputs, or a source, feeds it.
+
+    What only reads the map and smooths it brings nothing: what it passes on stays theirs who brought it.
+    """
+    seen, open_ = {name}, [name]
+    while open_:
+        node = graph.nodes[open_.pop()]
+        edges = [*(edge for _, edge in node.edges()), *(fed.edge for fed in node.feedback.values())]
+        if not edges:
+            return True
+        for edge in edges:
+            source = edge.source.node
+            if source == INPUTS and edge.kind.array is not None:
+                return True
+            if source in graph.nodes and source not in seen and not _is_map(graph.nodes[source]):
+                seen.add(source)
+                open_.append(source)
+    return False
+
+
+def _is_map(node: Node) -> bool:
+    return node.callee.id in (BEGIN, COMMIT)
+
+
 def _entries(graph: Graph, commit: Node) -> Iterator[_Entry]:
     for port, edge in commit.edges():
         if port.endswith("_evidence"):
@@ -170,7 +197,8 @@ def _source(graph: Graph, commit: Node, edge: Edge) -> _Source:
     """Where evidence comes from, and of which cue: that of the commit, of the node, or the node itself."""
     node = graph.nodes.get(edge.source.node)
     cue = commit.of or (node.of if node else None) or edge.source.node
-    return _Source(cue, edge.source.node, edge.source.port)
+    own = node is None or _brings_its_own(graph, node.name)
+    return _Source(cue, edge.source.node, edge.source.port, own)
 
 
 def _heard(entries: Any) -> dict[str, tuple[str, ...]]:
