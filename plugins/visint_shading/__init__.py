@@ -17,5 +17,6 @@ def visint_modules() -> list[Any]:
     from visint_shading.light import LightOf
     from visint_shading.oliensis_dupuis import OliensisDupuis
     from visint_shading.slope import Slope
+    from visint_shading.specular import Specular
 
-    return [AlbedoOf, IncidenceOf, LightOf, OliensisDupuis, Slope]
+    return [AlbedoOf, IncidenceOf, LightOf, OliensisDupuis, Slope, Specular]

@@ -93,7 +93,7 @@ def photometry_of(inputs: ShadingInputs, window: float) -> Photometry:
         albedo,
         found,
         trust,
-        *_incidence(view, albedo, ambient, trust, inputs.highlights),
+        *_incidence(view, albedo, ambient, trust),
     )
 
 
@@ -110,7 +110,8 @@ def _camera(inputs: ShadingInputs) -> Camera:
 
 def _view(inputs: ShadingInputs, window: float) -> tuple[Seen, float]:
     """The view, and the window widened with its noise: what is noise here makes stereo noisier still."""
-    view = seen(inputs.image, inputs.regions, inputs.boundaries, window / 6)
+    dull = ~inputs.highlights if inputs.highlights is not None else np.ones(inputs.image.shape, bool)
+    view = seen(inputs.image, dull, inputs.regions, inputs.boundaries, window / 6)
     return view, window * (1 + 10 * view.noise)
 
 
@@ -141,9 +142,7 @@ def _trust(found: Agreement | None, albedo: Albedo, fit: LightFit | None) -> Arr
     return np.full(albedo.value.size, UNTESTED) if found is None else trust_of(found, albedo.value) * fit.trust
 
 
-def _incidence(
-    view: Seen, albedo: Albedo, ambient: float, trust: Array, highlights: Array | None
-) -> tuple[Array, Array, Array]:
+def _incidence(view: Seen, albedo: Albedo, ambient: float, trust: Array) -> tuple[Array, Array, Array]:
     """Cosine of incidence (H, W) from brightness, its sigma and its reliability."""
     labels = np.where(albedo.value[view.labels] > 0, view.labels, 0)
     scale = albedo.value.astype(np.float32)[labels]
@@ -154,8 +153,6 @@ def _incidence(
     error = albedo.error.astype(np.float32)[labels]
     sigma = np.sqrt(noise**2 + (error * value) ** 2 + np.float32(0.01**2))
     sure = trust.astype(np.float32)[labels] * _informs(raw, value)
-    if highlights is not None:
-        sure = np.where(highlights, 0, sure)
     return value, sigma.astype(np.float32), np.nan_to_num(sure).astype(np.float32)
 
 

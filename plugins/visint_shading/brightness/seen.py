@@ -36,15 +36,16 @@ class Seen(NamedTuple):
         return int(self.labels.max(initial=0))
 
 
-def seen(image: Array, regions: Array | None, boundaries: Array | None, span: float = 1.0) -> Seen:
-    """``image`` float32 (H, W) inside its regions.
+def seen(image: Array, usable: Array, regions: Array | None, boundaries: Array | None, span: float) -> Seen:
+    """``image`` float32 (H, W) inside its regions, where it is ``usable`` (bool).
 
     The noisier the image, the wider the mean. ``span`` scales it: 1 suits images about 256 pixels wide.
     What is hardly brighter than noise, or saturated, gets label 0.
     """
     noise = noise_of(image)
-    usable = np.isfinite(image) & (image < SATURATED)
-    labels = patches(usable, regions, boundaries)
+    with np.errstate(invalid="ignore"):
+        known = usable & (image < SATURATED)
+    labels = patches(known, regions, boundaries)
     length = 0.0 if noise < 1e-3 else (0.7 + 28 * noise) * span
     weight = (labels > 0).astype(np.float32)
     plain = np.where(labels > 0, image, 0).astype(np.float32)

@@ -8,6 +8,7 @@ from visint_shading.incidence import IncidenceOf
 from visint_shading.light import LightOf
 from visint_shading.oliensis_dupuis import OliensisDupuis
 from visint_shading.slope import Slope
+from visint_shading.specular import Specular
 
 
 class TestAlbedo(ModuleContract):
@@ -28,3 +29,7 @@ class TestOliensisDupuis(ModuleContract):
 
 class TestSlope(ModuleContract):
     module = Slope
+
+
+class TestSpecular(ModuleContract):
+    module = Specular
