@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,6 +12,8 @@ import typer
 if TYPE_CHECKING:
     from visint import Graph
     from visint_lab.render.rendering import Rendering
+
+EXAMPLES = "Examples: visint demo;  visint demo --size 256 --out sphere;  visint run demo/run.json --out again"
 
 GRAPH = "stereo_sgm"
 """The graph that the demonstration runs: the best system there is."""
@@ -29,19 +32,51 @@ def command(
 ) -> None:
     """Render a textured sphere before a plane, reconstruct it, and say where the report is."""
     import visint
+    from visint.io import OutputFolder
     from visint_lab.render.rendering import render
     from visint_lab.scenes.demonstration import sphere_before_plane
 
+    OutputFolder(out, force=force)  # refuses before the work, not after it
     bound = visint.load(graph)
     pair = render(sphere_before_plane(size, seed))
-    result = visint.run(bound, **_wanted(bound, pair))
-    result.save(out, force=force)
+    files = _written(pair, out.with_name(f"{out.resolve().name}-pair"))
+    given = _wanted(bound, pair, files)
+    result = visint.run(bound, given)
+    result.save(out, force=force, sources={name: files[name] for name in files if name in given})
     print(comparison(result["depth"], pair), file=sys.stderr)
     print((out / "report.html").resolve())
 
 
-def _wanted(graph: Graph, pair: Rendering) -> dict[str, Any]:
-    offered = {"left": pair.left, "right": pair.right, "camera": pair.camera, "light": pair.light}
+def _written(pair: Rendering, folder: Path) -> dict[str, Path]:
+    """The pair and its calibration as files, by the inputs that they are: so that the run can be done again."""
+    from visint.io import encode_pfm, make_folder, write_bytes, write_text
+
+    make_folder(folder)
+    camera = pair.camera
+    files = {"left": folder / "left.pfm", "right": folder / "right.pfm", "camera": folder / "calib.txt"}
+    write_bytes(files["left"], encode_pfm(pair.left))
+    write_bytes(files["right"], encode_pfm(pair.right))
+    matrix = f"[{camera.focal_length} 0 {{}}; 0 {camera.focal_length} {camera.cy}; 0 0 1]"
+    low, high = camera.disparity_range or (0, camera.width / 4)
+    lines = {
+        "cam0": matrix.format(camera.cx), "cam1": matrix.format(camera.cx + camera.doffs),
+        "doffs": camera.doffs, "baseline": camera.baseline, "width": camera.width, "height": camera.height, "vmin": low, "vmax": high,
+        "unit": camera.unit,
+    }  # fmt: skip
+    write_text(files["camera"], "".join(f"{key}={value}\n" for key, value in lines.items()))
+    return files
+
+
+def _wanted(graph: Graph, pair: Rendering, files: Mapping[str, Path]) -> dict[str, Any]:
+    """What the graph takes of the scene, read from the files that were written."""
+    from visint.io import read_camera, read_image
+
+    offered = {
+        "left": read_image(files["left"]),
+        "right": read_image(files["right"]),
+        "camera": read_camera(files["camera"]),
+        "light": pair.light,
+    }
     return {name: value for name, value in offered.items() if name in graph.inputs}
 
 

@@ -114,6 +114,17 @@ def test_demo(visint, tmp_path):
     assert done.out == f"{(tmp_path / 'scene' / 'report.html').resolve()}\n"
     assert "against the truth" in done.err
     assert (tmp_path / "scene/depth.pfm").exists()
+    assert visint("run", "scene/run.json", "--out", "again").code == 0
+    same = ("depth.pfm", "normals.npz", "points.ply", "run.json")
+    assert all((tmp_path / "again" / f).read_bytes() == (tmp_path / "scene" / f).read_bytes() for f in same)
+
+
+def test_demo_refuses_its_folder_before_the_work(refused, tmp_path, monkeypatch):
+    """Nothing is rendered for a folder that holds something else."""
+    (tmp_path / "scene").mkdir()
+    (tmp_path / "scene" / "mine.txt").write_text("mine")
+    monkeypatch.setattr("visint_lab.render.rendering.render", None)
+    assert "VI602" in refused(5, "demo", "--size", 64, "--out", "scene")
 
 
 class TestSchema:

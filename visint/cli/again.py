@@ -54,6 +54,7 @@ class Former(NamedTuple):
         paths, text, gamma = told.get("paths", []), told.get("text", ""), told.get("gamma")
         if not (_all_texts(paths) and isinstance(text, str) and isinstance(gamma, float | int | None)):
             raise _no_record(self.path)
+        text = text or ("" if paths else _spelled(told.get("value")))
         if not paths and not text:
             found = f"the input {name!r} of that run did not come from a file"
             raise InputError.of("VI304", found, where=str(self.path), write=f"--in {name}=PATH")
@@ -94,6 +95,19 @@ def former(path: Path) -> Former:
     stop_after, start = record.get("stop_after") or "", record.get("start") or {}
     followed = bool(record.get("attribution"))
     return Former(path, graph, record["seed"], stop_after, start, inputs, followed)
+
+
+def _spelled(value: Any) -> str:
+    """A number, a flag, a text or a light that was given in Python, as the command line has it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, int | float | str):
+        return str(value)
+    vector = value.get("vector") if isinstance(value, dict) else None
+    if not (isinstance(vector, list) and all(isinstance(one, float | int) for one in vector)):
+        return ""
+    text = ",".join(map(repr, vector))
+    return f"at {text}" if value.get("place") == "point" else text
 
 
 def _is_record(record: Any) -> bool:

@@ -46,6 +46,7 @@ class Light(BaseModel):
         length = math.hypot(x, y, z)
         if not (length > 0 and math.isfinite(length)):
             raise ValueError(f"a distant light wants a direction; ({x}, {y}, {z}) is none")
+        length = 1.0 if abs(length - 1) < 1e-15 else length  # one that is read back stays as it was
         return cls(place="distant", vector=(x / length, y / length, z / length))
 
     @classmethod

@@ -17,6 +17,7 @@ from visint.fields.camera import Camera
 __all__ = ["middlebury_camera"]
 
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?\Z", re.ASCII)
+_UNIT = re.compile(r"[A-Za-z]{1,20}\Z", re.ASCII)
 _MATRICES = ("cam0", "cam1")
 _NUMBERS = ("doffs", "baseline", "width", "height", "ndisp", "vmin", "vmax")
 _POSITIVE = ("baseline", "width", "height", "ndisp")
@@ -32,10 +33,10 @@ class _Intrinsics(NamedTuple):
 
 
 def middlebury_camera(text: str, name: str) -> Camera:
-    """The camera of a rectified pair, unit mm, from the text of a ``calib.txt`` called ``name`` in messages.
+    """The camera of a rectified pair from the text of a ``calib.txt`` called ``name`` in messages.
 
-    ``doffs`` is cam1's cx less cam0's where the file has none. The search range is (vmin, vmax), else
-    (0, ndisp − 1), else None.
+    The unit is mm, unless a line ``unit=`` of our own says another. ``doffs`` is cam1's cx less cam0's where
+    the file has none. The search range is (vmin, vmax), else (0, ndisp − 1), else None.
 
     Raises
     ------
@@ -56,6 +57,7 @@ class _Sheet:
         self.numbers: dict[str, float] = {}
         self.matrices: dict[str, _Intrinsics] = {}
         self.problems: list[Problem] = []
+        self.unit = "mm"
 
     def wrong(self, key: str, found: str, write: str = "") -> None:
         """One more problem, on the line of ``key`` if it has one."""
@@ -83,6 +85,10 @@ class _Sheet:
             self.matrix(key, value)
         elif key in _NUMBERS:
             self.number(key, value)
+        elif key == "unit" and not _UNIT.match(value):
+            self.wrong(key, f"is {value[:40]!r}; wants a word", "unit=mm")
+        elif key == "unit":
+            self.unit = value
 
     def number(self, key: str, value: str) -> None:
         """Keep a number; sizes and counts are whole and positive."""
@@ -126,7 +132,7 @@ class _Sheet:
         return Camera(
             focal_length=left.f, cx=left.cx, cy=left.cy, baseline=numbers["baseline"],
             width=int(numbers["width"]), height=int(numbers["height"]),
-            doffs=self.doffs(), disparity_range=span, unit="mm",
+            doffs=self.doffs(), disparity_range=span, unit=self.unit,
         )  # fmt: skip
 
     def complete(self) -> None:

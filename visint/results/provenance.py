@@ -7,6 +7,8 @@ import math
 import platform
 from collections.abc import Iterator, Mapping
 from importlib.metadata import PackageNotFoundError, version
+from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -28,6 +30,7 @@ __all__ = [
     "modules",
     "parameters",
     "provenance",
+    "source_of",
     "unit_of",
 ]
 
@@ -44,6 +47,11 @@ class Source(NamedTuple):
     paths: tuple[str, ...] = ()
     text: str = ""
     gamma: float | None = None
+
+
+def source_of(given: Source | str | PathLike[str]) -> Source:
+    """A source, or the path of one file as one."""
+    return given if isinstance(given, Source) else Source((str(Path(given).absolute()),))
 
 
 def provenance(result: Result, sources: Mapping[str, Source]) -> dict[str, Any]:

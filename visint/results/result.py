@@ -15,7 +15,7 @@ from visint.graph.graph import Graph
 from visint.names import did_you_mean
 from visint.results.derive import derived
 from visint.results.premises import Premise, premises
-from visint.results.provenance import Source
+from visint.results.provenance import Source, source_of
 from visint.results.records import Measure, Record, Stop, Turn, Warned
 
 __all__ = ["Result", "gather"]
@@ -120,7 +120,7 @@ class Result(Mapping[str, Any]):
         folder: str | PathLike[str],
         *,
         force: bool = False,
-        sources: Mapping[str, Source] | None = None,
+        sources: Mapping[str, Source | str | PathLike[str]] | None = None,
         against: str | PathLike[str] | None = None,
     ) -> tuple[str, ...]:
         """Writes every artifact, and gives their file names; all are there, or none.
@@ -132,7 +132,7 @@ class Result(Mapping[str, Any]):
         force
             Take a folder that holds other things too.
         sources
-            The files the inputs were read from; with them the run can be done again from ``run.json``.
+            The file that each input was read from; with them the run can be done again from ``run.json``.
         against
             The folder of another run: the report compares this one with it, map by map.
 
@@ -145,7 +145,8 @@ class Result(Mapping[str, Any]):
         """
         from visint.results.artifacts import save
 
-        return save(self, folder, force=force, sources=sources or {}, against=against)
+        read = {name: source_of(one) for name, one in (sources or {}).items()}
+        return save(self, folder, force=force, sources=read, against=against)
 
 
 def gather(  # noqa: PLR0913 - all that a run leaves, put together in this one place
