@@ -63,6 +63,8 @@ class Setting:
         bool: the right view does not see it; anchored firmly for want of anything better.
     unseen
         bool: what neither view can be trusted with, highlights; neither data nor anchor.
+    adrift
+        bool: near a depth edge, where stereo smooths over it; hardly anchored.
     brightness
         What shading knows; None without a light.
     zoom
@@ -75,6 +77,7 @@ class Setting:
     gap: Array
     hidden: Array
     unseen: Array
+    adrift: Array
     camera: Camera
     brightness: Brightness | None = None
     zoom: float = 1.0
@@ -84,6 +87,8 @@ HOLD = 0.3
 """Least weight of the anchor on what the right view does not see, px⁻²."""
 TURNING = 4.0
 """What the right view does not see is turning away: its plate is that of the surface."""
+ADRIFT = 1e-4
+"""The anchor's weight where stereo smooths over a depth edge, px⁻²."""
 WEAKEST = 1e-7
 """Keeps a piece without any data where it is."""
 
@@ -164,6 +169,7 @@ def _pulls(setting: Setting, recipe: Recipe, surface: Array, box: tuple[slice, s
     data = data_term(setting.views, surface, setting.gap)
     seen = np.where(setting.unseen, np.float32(0), np.float32(1))
     anchor = np.where(setting.hidden, np.maximum(recipe.anchor, HOLD), recipe.anchor) * seen
+    anchor = np.where(setting.adrift, ADRIFT, anchor)
     trust = data.weight * seen
     pull = trust * (data.target - surface) + anchor * (setting.stereo - surface)
     inside = setting.domain.inside[box]

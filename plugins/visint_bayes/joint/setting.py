@@ -10,13 +10,14 @@ from visint.arrays import Array
 from visint.fields import Camera, Light
 from visint_bayes.joint.brightness import Brightness
 from visint_bayes.joint.domain import Domain
-from visint_bayes.joint.energy import Setting, slopes_of
+from visint_bayes.joint.cuts import cut_by, near_cuts, patches, standing
+from visint_bayes.joint.energy import Recipe, Setting, minimum, slopes_of
 from visint_bayes.joint.noise import noise_inside
 from visint_bayes.joint.photometry import masked_blur, views_of
 from visint_bayes.joint.reflectance import Reflectance, reflectance
 from visint_bayes.joint.slant import lighting
 
-__all__ = ["Pair", "blur_for", "brightened", "setting_of"]
+__all__ = ["Pair", "blur_for", "brightened", "setting_of", "with_cuts"]
 
 USUAL = 95.0
 """Root of an object's area in pixels, at which the weights of the energy are given."""
@@ -24,6 +25,12 @@ MODEL = 0.03
 """n·l is never known better than this: the model's own error."""
 TOO_MUCH_SHINE = 0.35
 """Of the object: beyond, highlights are no highlights."""
+
+REACH = 10.0
+"""How far from a depth edge stereo is not believed, px at 256 pixels."""
+
+EXTENDED = Recipe(0.003, 0.3, crease=10.0, turns=3)
+"""How a surface is continued to an edge: smoothly, by brightness where there is a light."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,11 +71,16 @@ def setting_of(pair: Pair) -> tuple[Setting, float]:
     unseen = np.zeros_like(pair.inside)
     domain = Domain.of(pair.inside)
     zoom = float(np.sqrt(max(pair.inside.sum(), 1)) / USUAL)
-    return Setting(domain, views, pair.stereo, gap, hidden, unseen, pair.camera, None, zoom), noise
+    return Setting(domain, views, pair.stereo, gap, hidden, unseen, unseen, pair.camera, None, zoom), noise
 
 
-def brightened(setting: Setting, pair: Pair, noise: float, surface: Array) -> tuple[Setting, Reflectance | None]:
-    """The setting with what brightness says, as ``surface`` explains it; unchanged without a light."""
+def brightened(
+    setting: Setting, pair: Pair, noise: float, surface: Array, amplitude: float = 1.0
+) -> tuple[Setting, Reflectance | None]:
+    """The setting with what brightness says, as ``surface`` explains it; unchanged without a light.
+
+    At an ``amplitude`` of 0 brightness still tells highlights and albedo, and says nothing about slopes.
+    """
     if pair.light is None or pair.light.vector is None:
         return setting, None
     blur = blur_for(noise)
@@ -82,8 +94,27 @@ def brightened(setting: Setting, pair: Pair, noise: float, surface: Array) -> tu
     incidence = np.where(usable, masked_blur(image, inside, blur) / albedo, np.nan).astype(np.float32)
     sigma = np.sqrt((noise / albedo) ** 2 + 4 * np.pi * blur_for(0.03) ** 2 * MODEL**2).astype(np.float32)
     shiny = found.shine if found.shine.sum() < TOO_MUCH_SHINE * pair.inside.sum() else np.zeros_like(found.shine)
-    known = Brightness(incidence, sigma, pair.light)
+    known = Brightness(incidence, sigma / max(amplitude, 1e-6) ** 0.5, pair.light) if amplitude > 0 else None
     return replace(setting, brightness=known, unseen=shiny), found
+
+
+def with_cuts(setting: Setting, pair: Pair, noise: float, surface: Array) -> tuple[Setting, Array]:
+    """The setting cut at depth edges inside the object, where brightness shows them and surfaces confirm them.
+
+    Comes with the surface to go on from: near a cut it continues what lies on its own side of it.
+    """
+    blur = max(blur_for(noise), 1.0)
+    calm = masked_blur(np.nan_to_num(pair.left), pair.inside.astype(np.float32), blur)
+    labels = patches(calm, pair.inside, noise / (3.54 * blur), setting.zoom)
+    if labels.max() < 2:
+        return setting, surface
+    apart = cut_by(pair.inside, labels)
+    near = near_cuts(apart, REACH * setting.zoom)
+    blind = replace(setting, domain=apart, adrift=near, unseen=setting.unseen | near)
+    tried = minimum(blind, EXTENDED, surface)
+    domain = standing(pair.inside, labels, tried, setting.zoom)
+    near = near_cuts(domain, REACH * setting.zoom)
+    return replace(setting, domain=domain, adrift=near), np.where(near, tried, surface)
 
 
 def _inner(mask: Array) -> Array:
