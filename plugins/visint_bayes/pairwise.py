@@ -27,12 +27,12 @@ class PairwiseParams(Params):
         The coupling coefficient α = λ/(1+λ): how much of the relief's bending a sweep puts into the depth. 0 is
         the control: the neighbours' mean alone. Above 0.05 the relief's own errors show.
     smoothing
-        Where the neighbours' mean is taken: ``everywhere`` inside regions, or only where relief and depth bend
-        ``against`` each other, as the correction always is.
+        Where the neighbours' mean is taken: only where relief and depth bend ``against`` each other, as Eq. 4.7
+        is said to apply, or ``everywhere`` inside regions, which smooths more and flattens.
     """
 
     alpha: float = Field(default=0.05, ge=0, le=1)
-    smoothing: Literal["everywhere", "against"] = "everywhere"
+    smoothing: Literal["everywhere", "against"] = "against"
 
 
 class PairwiseInputs(Ports):

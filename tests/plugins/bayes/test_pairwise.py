@@ -18,11 +18,11 @@ class TestContract(ModuleContract):
     module = Pairwise
 
 
-def step(depth, relief=None, *, boundaries=None, kinds=None, **params):
+def step(depth, relief=None, *, boundaries=None, kinds=None, smoothing="everywhere", **params):
     flat = np.zeros(depth.shape) if relief is None else relief
     told = ReliefEvidence.of(flat.astype(np.float32), 1.0, 1.0)
     given = PairwiseInputs(depth=depth.astype(np.float32), relief=told, boundaries=boundaries, kinds=kinds)
-    return Pairwise(PairwiseParams(**params)).run(given, Context()).depth
+    return Pairwise(PairwiseParams(smoothing=smoothing, **params)).run(given, Context()).depth
 
 
 def test_the_correction_is_alpha_times_the_relief_s_quarter_laplacian():
