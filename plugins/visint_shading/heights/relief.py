@@ -12,7 +12,7 @@ from visint.fields.geometry import pixel_grid, slopes_from_depth
 from visint_shading.heights.gradients import conics, square_to_light
 from visint_shading.heights.propagation import propagated
 from visint_shading.heights.singular import Singular, bends_of, singular_points
-from visint_shading.lighting.rays import cosines
+from visint_shading.lighting.rays import cosines, usual_depth
 from visint_shading.photometry import Photometry
 from visint_shading.surface.cone import onto_cone
 
@@ -38,8 +38,7 @@ def relief_of(found: Photometry, light: Light, depth: Array | None, otherwise: i
     """
     assert found.light is not None
     labels, camera = found.seen.labels, found.camera
-    distance = 1.0 if depth is None or not (depth > 0).any() else float(np.nanmedian(depth[depth > 0]))
-    level = square_to_light(light, camera, distance)
+    level = square_to_light(light, camera, usual_depth(depth, light, camera))
     usable = np.where(np.isfinite(level) & np.isfinite(found.incidence), labels, 0).astype(np.int32)
     group, label = singular_points(found.incidence, _noise(found), usable)
     height, bend = _known(found, depth, level, group, reach)

@@ -8,20 +8,20 @@ from visint.arrays import Array
 from visint.fields import Camera, Light
 from visint.fields.geometry import pixel_grid
 
-__all__ = ["cosines", "light_directions"]
+__all__ = ["cosines", "light_directions", "usual_depth"]
 
 
 def light_directions(light: Light, depth: Array | None, camera: Camera) -> Array:
     """Unit vectors from the surface to the light, float32 (H, W, 3).
 
-    A point light needs positions: unknown depth is taken as the median of the known, and if nothing is known
-    the surface as lying as far before the camera as the light is away from it.
+    A point light needs positions: unknown depth is taken as :func:`usual_depth`.
     """
     from visint_shading import _kernels
 
     vector = np.asarray(light.vector, np.float32)
-    reach = float(np.linalg.norm(vector)) or 1.0
-    place = np.full(camera.size, reach, np.float32) if depth is None else _filled(depth, reach)
+    usual = np.float32(usual_depth(depth, light, camera))
+    with np.errstate(invalid="ignore"):
+        place = np.full(camera.size, usual) if depth is None else np.where(depth > 0, depth, usual)
     found = np.empty((*place.shape, 3), np.float32)
     across, down = (grid.ravel() for grid in pixel_grid(camera))
     near = light.place == "point"
@@ -29,11 +29,17 @@ def light_directions(light: Light, depth: Array | None, camera: Camera) -> Array
     return found
 
 
-def _filled(depth: Array, otherwise: float) -> Array:
-    """``depth`` with its unknown pixels at the median of the known ones."""
-    known = np.isfinite(depth) & (depth > 0)
-    middle = float(np.median(depth[known][::7])) if known.any() else otherwise
-    return np.where(known, depth, np.float32(middle)).astype(np.float32)
+def usual_depth(depth: Array | None, light: Light, camera: Camera) -> float:
+    """The median of the known depth; else what the middle of the search range stands for; else ten baselines,
+    or as far as the light is away if that is more."""
+    if depth is not None:
+        known = depth[np.isfinite(depth) & (depth > 0)]
+        if known.size:
+            return float(np.median(known[::7]))
+    shift = (camera.middle_disparity or 0.0) + camera.doffs
+    if shift > 0:
+        return camera.focal_length * camera.baseline / shift
+    return max(10 * camera.baseline, float(np.linalg.norm(np.asarray(light.vector))))
 
 
 def cosines(normals: Array, light: Array) -> Array:
