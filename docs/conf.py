@@ -7,11 +7,17 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
 
+from gallery_pages import write_gallery
+from link_check import broken_links
 from reference_pages import write_all
+from sphinx.application import Sphinx
+from sphinx.errors import ExtensionError
 
 import visint
 
-write_all(Path(__file__).parent / "reference" / "generated")
+GENERATED = Path(__file__).parent / "reference" / "generated"
+write_all(GENERATED)
+write_gallery(GENERATED)
 
 project = "visint"
 author = "the visint authors"
@@ -22,4 +28,14 @@ myst_heading_anchors = 3
 html_theme = "furo"
 html_title = "visint"
 exclude_patterns = ["_build"]
-suppress_warnings = ["myst.xref_missing"]
+
+
+def _check_links(app: Sphinx, error: Exception | None) -> None:
+    """The build fails if a link inside the site leads nowhere."""
+    if error is None and app.builder.name == "html" and (broken := broken_links(Path(app.outdir))):
+        raise ExtensionError("links that lead nowhere:\n" + "\n".join(broken))
+
+
+def setup(app: Sphinx) -> None:
+    """Called by Sphinx."""
+    app.connect("build-finished", _check_links)
