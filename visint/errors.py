@@ -92,6 +92,29 @@ CODES: dict[str, str] = {
 """Every error code with what it means; the reference page is made from this table."""
 
 
+_NEXT: dict[str, str] = {
+    "VI301": "the path of a file that is there",
+    "VI302": "the file written anew, or another one",
+    "VI303": "a smaller one: cropped, or every second row and column",
+    "VI304": "visint show GRAPH   (what it is given)",
+    "VI305": "the file written anew as what is wanted",
+    "VI306": "the calibration of these images, whole",
+    "VI307": "images of one size, and the calibration of that size",
+    "VI401": "--debug   (where in the module), and tell whoever wrote it",
+    "VI402": "tell whoever wrote the module: visint.testing.ModuleContract finds it",
+    "VI403": "tell whoever wrote the module: visint.testing.ModuleContract finds it",
+    "VI404": "on_exhausted: accept   (or more turns)",
+    "VI501": "visint modules   (what is broken), then install it anew or remove it",
+    "VI502": "pip uninstall one of the two",
+    "VI503": "a version of the plugin for this visint",
+    "VI504": "visint modules   (what is installed)",
+    "VI601": "another folder",
+    "VI603": "another format",
+    "VI701": "visint VERB --help",
+}
+"""What to try next where a problem has no line to paste, by code."""
+
+
 @dataclass(frozen=True, slots=True)
 class Where:
     """A place: a file, a line and column in it (from 1), and the path of keys down to it."""
@@ -140,7 +163,11 @@ class Problem:
             part
             for part in (
                 f"{self.choices}." if self.choices else "",
-                f"Write: {self.write}" if self.write else "",
+                f"Write: {self.write}"
+                if self.write
+                else f"Try: {_NEXT[self.code]}."
+                if self.code in _NEXT
+                else "",
                 f"[{self.fault}]",
             )
             if part

@@ -16,6 +16,11 @@ if TYPE_CHECKING:
 
 KEYS = ("rmse", "s", "median", "bad1", "bad2", "mae", "ause", "seconds")
 
+EXAMPLES = (
+    "Examples: visint ablate uniform_bayesian a/sphere/lambertian+2%;  "
+    "visint ablate mine.yaml PAIR --truth DIR --out ablation"
+)
+
 
 def command(
     graph: Annotated[str, typer.Argument(help="A graph's name or path.")],

@@ -17,6 +17,13 @@ STEREO = ("bad1", "bad2", "mae", "bad2_low", "density", "ause", "cpu", "peak_mb"
 RUN = ("rmse", "s", "median", "angle", "rmse_visible", "s_visible", "ause", "cpu", "peak_mb")
 PERCENT = ("bad1", "bad2", "bad2_low", "density")
 
+EXAMPLES = (
+    "Examples: visint bench stereo --on ../data --out bench;  "
+    "visint bench run --on a --size 256;  "
+    "visint bench engine;  "
+    "visint bench start"
+)
+
 
 def command(
     what: Annotated[

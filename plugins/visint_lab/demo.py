@@ -60,7 +60,8 @@ def _written(pair: Rendering, folder: Path) -> dict[str, Path]:
     low, high = camera.disparity_range or (0, camera.width / 4)
     lines = {
         "cam0": matrix.format(camera.cx), "cam1": matrix.format(camera.cx + camera.doffs),
-        "doffs": camera.doffs, "baseline": camera.baseline, "width": camera.width, "height": camera.height, "vmin": low, "vmax": high,
+        "doffs": camera.doffs, "baseline": camera.baseline, "width": camera.width, "height": camera.height,
+        "vmin": low, "vmax": high,
         "unit": camera.unit,
     }  # fmt: skip
     write_text(files["camera"], "".join(f"{key}={value}\n" for key, value in lines.items()))

@@ -15,6 +15,12 @@ if TYPE_CHECKING:
     from visint_lab.trials.improvement import RowResult
     from visint_lab.trials.published import ImprovementTable
 
+EXAMPLES = (
+    "Examples: visint reproduce 4.6;  "
+    "visint reproduce 5.3 --size 256 --out table;  "
+    "visint reproduce 4.5 --seeds 5 --noise 2%"
+)
+
 
 def command(
     table: Annotated[str, typer.Argument(help="4.5, 4.6, 4.7, 4.8, 5.2, 5.3 or 5.4.")],

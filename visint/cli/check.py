@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from visint.cli.complete import graphs
 from visint.errors import GraphError, VisintError
 
 __all__ = ["EXAMPLES", "command"]
@@ -15,7 +16,9 @@ EXAMPLES = "Examples: visint check stereo_sgm;  visint check mine.yaml;  visint 
 
 
 def command(
-    graph: Annotated[str, typer.Argument(help="A graph file, or the name of a shipped graph.")],
+    graph: Annotated[
+        str, typer.Argument(help="A graph file, or the name of a shipped graph.", autocompletion=graphs)
+    ],
     as_json: Annotated[bool, typer.Option("--json", help="Problems as JSON on stdout.")] = False,
 ) -> None:
     """Read, bind and check a graph; run nothing. Tells all problems of a phase at once."""

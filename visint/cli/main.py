@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import typer
 
 from visint.cli import check, modules, run, schema, show
-from visint.cli.verbs import Verbs
+from visint.cli.verbs import Verbs, listed_examples
 from visint.errors import UsageError, VisintError
 
 __all__ = ["application", "main"]
@@ -35,7 +35,7 @@ def application() -> typer.Typer:
     app.callback()(_top)
     for verb in (run, check, show, modules, schema):
         name, about = verb.__name__.rpartition(".")[2], (verb.command.__doc__ or "").partition(".")[0]
-        app.command(name=name, short_help=about, epilog=verb.EXAMPLES)(verb.command)
+        app.command(name=name, short_help=about, epilog=listed_examples(verb.EXAMPLES))(verb.command)
     return app
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from visint.cli import complete
 from visint.errors import PluginError, UsageError, VisintError
 from visint.names import ModuleId, did_you_mean, listed
 
@@ -25,7 +26,12 @@ _PARTS = ("inputs", "outputs", "parameters")
 
 
 def command(
-    module: Annotated[str, typer.Argument(help="A module's id, such as stereo.sgm, or a plugin's name.")] = "",
+    module: Annotated[
+        str,
+        typer.Argument(
+            help="A module's id, such as stereo.sgm, or a plugin's name.", autocompletion=complete.modules
+        ),
+    ] = "",
     as_json: Annotated[bool, typer.Option("--json", help="As JSON on stdout.")] = False,
 ) -> None:
     """List the installed plugins and their modules, or tell what one module takes and gives."""

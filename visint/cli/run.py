@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from visint.cli.complete import graphs
 from visint.cli.given import Given, settings
 from visint.cli.interrupt import interruptible, undoable
 from visint.cli.progress import progress
@@ -32,19 +33,28 @@ EXAMPLES = (
 
 
 def command(  # noqa: PLR0913, PLR0917 - the options of a command line are many, and typer reads them here
-    graph: Annotated[str, typer.Argument(help="A graph file, a shipped graph, or a run.json.")],
+    graph: Annotated[
+        str, typer.Argument(help="A graph file, a shipped graph, or a run.json.", autocompletion=graphs)
+    ],
     out: Annotated[
         Path, typer.Option(readable=False, help="The folder for the results: new, empty, or a former run.")
     ],
-    left: Annotated[str, typer.Option(help="The left (reference) image of a rectified pair.")] = "",
+    left: Annotated[str, typer.Option(help="The left (reference) image of the pair.")] = "",
     right: Annotated[str, typer.Option(help="The right image, of the same size.")] = "",
     calib: Annotated[
-        str, typer.Option(help="The calibration file (Middlebury calib.txt); gives camera and range.")
+        str,
+        typer.Option(
+            help="The calibration: Middlebury calib.txt, OpenCV stereo YAML or KITTI. "
+            "A pair that is not rectified is, by it."
+        ),
     ] = "",
     light: Annotated[str, typer.Option(help="Direction to a distant light, x,y,z.")] = "",
     light_at: Annotated[str, typer.Option(help="Position of a light, x,y,z, in the baseline's unit.")] = "",
     disparity_range: Annotated[
-        str, typer.Option(help="Search range a,b in pixels; without --calib, depth is relative.")
+        str,
+        typer.Option(
+            help="Search range a,b in pixels, before that of --calib; without --calib, depth is relative."
+        ),
     ] = "",
     in_: Annotated[
         list[str] | None,
@@ -58,7 +68,9 @@ def command(  # noqa: PLR0913, PLR0917 - the options of a command line are many,
         list[str] | None, typer.Option(help="A spoke of the hub to leave out; repeatable.")
     ] = None,
     control: Annotated[str, typer.Option(help="One of the graph's controls.")] = "",
-    stop_after: Annotated[str, typer.Option(help="The node to stop after; later outputs are left out.")] = "",
+    stop_after: Annotated[
+        str, typer.Option(help="The node to stop after; what it gives is written as NODE_PORT.")
+    ] = "",
     start: Annotated[str, typer.Option("--from", help="A former run whose map to start from.")] = "",
     seed: Annotated[int | None, typer.Option(help="Seed of random numbers.  [default: 0]")] = None,
     threads: Annotated[int, typer.Option(min=1, help="Nodes that may run side by side.")] = 1,

@@ -16,7 +16,7 @@ from visint.errors import UsageError
 from visint.names import did_you_mean, listed
 from visint.registry.discover import Entry, discover, only
 
-__all__ = ["Verbs"]
+__all__ = ["Verbs", "listed_examples"]
 
 
 class Verbs(TyperGroup):
@@ -60,13 +60,21 @@ class Verbs(TyperGroup):
         return verb, _loaded(only(discover("visint.commands")[verb])), args[1:]
 
 
+def listed_examples(examples: str | None) -> str | None:
+    """The examples of a verb for its help: a line each, as they can be pasted."""
+    if not examples:
+        return None
+    head, _, lines = examples.partition(": ")
+    return f"\b\n{head}:\n" + "\n".join(f"  {line.strip()}" for line in lines.split(";  "))
+
+
 def _loaded(entry: Entry) -> Any:
     from visint.registry.load import import_entry
 
     function = import_entry(entry)
     app = typer.Typer(add_completion=False, rich_markup_mode=None)
     examples = getattr(sys.modules.get(function.__module__), "EXAMPLES", None)
-    app.command(name=entry.name, epilog=examples)(function)
+    app.command(name=entry.name, epilog=listed_examples(examples))(function)
     return typer.main.get_command(app)
 
 
