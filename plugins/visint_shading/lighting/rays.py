@@ -31,7 +31,8 @@ def light_directions(light: Light, depth: Array | None, camera: Camera) -> Array
 
 def usual_depth(depth: Array | None, light: Light, camera: Camera) -> float:
     """The median of the known depth; else what the middle of the search range stands for; else ten baselines,
-    or as far as the light is away if that is more."""
+    or as far as the light is away if that is more.
+    """
     if depth is not None:
         known = depth[np.isfinite(depth) & (depth > 0)]
         if known.size:
