@@ -113,6 +113,10 @@ def _set_one(spec: GraphSpec, name: str, param: str, value: Any) -> GraphSpec:
     if owner in spokes and step in ("cohere", "reconcile"):
         spoke = spokes[owner].model_copy(update={step: _with(getattr(spokes[owner], step), param, value)})
         return _with_hub(spec, spokes={**spokes, owner: spoke})
+    spelled_out = [one for one, node in spec.nodes.items() if node.of == owner and one.endswith(f"_{step}")]
+    if spelled_out:
+        nodes = {one: _with(spec.nodes[one], param, value) for one in spelled_out}
+        return spec.model_copy(update={"nodes": {**spec.nodes, **nodes}})
     if owner in fields and step == "reconcile":
         return _with_hub(spec, reconcile={**fields, owner: _with(fields[owner], param, value)})
     raise _names_nothing("node", name, [*spec.nodes, *spokes], param)
@@ -131,10 +135,10 @@ def _without(spec: GraphSpec, spoke: str) -> GraphSpec:
     gone = {name for name, node in spec.nodes.items() if node.of == spoke}
     if not gone:
         raise _names_nothing("spoke", spoke, dict.fromkeys(node.of for node in spec.nodes.values() if node.of))
-    gone |= _mute(spec, gone)
+    gone |= _mute(spec, gone) | {f"{spoke}_cohere", f"{spoke}_reconcile"}
     before = {
         name: str(spec.nodes[name].in_["map"]).partition(".")[0]
-        for name in gone
+        for name in gone & set(spec.nodes)
         if spec.nodes[name].uses == COMMIT
     }
     silent = gone - set(before)

@@ -55,7 +55,7 @@ def _fault(graph: Graph, key: str, value: Any) -> _Fault | None:
 
 
 def _step(graph: Graph, name: str) -> Node | None:
-    """A step of a spoke with several kinds of evidence: one node a kind, set together under the spoke's name."""
+    """A step of a spoke with several kinds of evidence: one node a kind, set together by the spoke's name."""
     spoke, _, step = name.rpartition("_")
     found = (node for one, node in graph.nodes.items() if node.of == spoke and one.endswith(f"_{step}"))
     return next(found, None) if step in ("cohere", "reconcile") else None
