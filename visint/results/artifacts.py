@@ -49,8 +49,7 @@ def save(
 def files_of(result: Result) -> Files:
     """(file name, bytes) of every output, its confidence, the evidence, points and surface; made one by one."""
     writers = result.graph.catalog.writers()
-    for name, value in result.outputs.items():
-        kind = result.kinds[name]
+    for name, kind, value in _one_by_one(result):
         if kind in writers:
             yield from writers[kind](name, value).items()
         elif kind in _BY_KIND:
@@ -64,6 +63,15 @@ def files_of(result: Result) -> Files:
         arrays = {**dict(_evidence(result.evidence)), **dict(_shares(result))}
         yield "evidence.npz", io.encode_npz(arrays, dict(_units(result)))
     yield from solid(result)
+
+
+def _one_by_one(result: Result) -> Iterator[tuple[str, str, Any]]:
+    """(name, kind, value) of each output; of a list ``NAME_0``, ``NAME_1``, …"""
+    for name, value in result.outputs.items():
+        if isinstance(value, tuple):
+            yield from ((f"{name}_{i}", result.kinds[name], one) for i, one in enumerate(value))
+        else:
+            yield name, result.kinds[name], value
 
 
 def _pfm(name: str, value: Array) -> Files:
