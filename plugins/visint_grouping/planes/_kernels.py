@@ -3,8 +3,8 @@
 """Kernels of region planes: superpixels, robust planes, and what each plane costs each region.
 
 Planes are rows (a, b, c) of float64: d = a x + b y + c with x, y in pixels from the image's corner.
-Regions are numbered from 0; ``order`` lists flat pixels region by region, those of region r being
-``order[starts[r]:starts[r + 1]]``.
+Regions are numbered from 0; ``order`` lists pixels (row << 20 | column) region by region, those of region r
+being ``order[starts[r]:starts[r + 1]]``.
 """
 
 from __future__ import annotations
@@ -15,6 +15,11 @@ from numba import njit
 OFFSETS = ((0, 1), (1, 0), (1, 1), (1, -1))
 GRADES = 16
 """Steps of a sorted edge weight to each grey level."""
+NO_EDGE = 442 * GRADES
+"""Above every grade: 255 √3 grey levels at most."""
+HALF = 20
+"""Bits of a listed pixel that hold its column; those above hold its row."""
+MASK = (1 << HALF) - 1
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -25,59 +30,70 @@ def _root(home, i):
     return i
 
 
+@njit(cache=True, nogil=True, inline="always")
+def _step(colour, y, x, v, u):
+    squares = np.float32(0)
+    for c in range(colour.shape[2]):
+        off = colour[y, x, c] - colour[v, u, c]
+        squares += off * off
+    return np.sqrt(squares)
+
+
 @njit(cache=True, nogil=True)
-def _sorted_edges(colour, one, other, weight):
-    """8-connected edges in ascending order of their weight, by counting; returns how many there are."""
-    rows, columns, channels = colour.shape
-    bins = 442 * GRADES + 2
-    counts = np.zeros(bins + 1, np.int64)
-    for turn in range(2):
-        for y in range(rows):
-            for x in range(columns):
-                for dy, dx in OFFSETS:
-                    v, u = y + dy, x + dx
-                    if v >= rows or u < 0 or u >= columns:
-                        continue
-                    squares = np.float32(0)
-                    for c in range(channels):
-                        step = colour[y, x, c] - colour[v, u, c]
-                        squares += step * step
-                    step = np.sqrt(squares)
-                    grade = min(np.int64(step * GRADES), bins - 2)
-                    if turn == 0:
-                        counts[grade + 1] += 1
-                    else:
-                        place = counts[grade]
-                        counts[grade] += 1
-                        one[place] = y * columns + x
-                        other[place] = v * columns + u
-                        weight[place] = step
-        if turn == 0:
-            for b in range(bins):
-                counts[b + 1] += counts[b]
-    return counts[bins - 1]
+def _graded_steps(colour, grades, counts):
+    """Grade of the step to four neighbours, uint16 (H, W, 4), counted; ``NO_EDGE`` beyond the image."""
+    rows, columns = colour.shape[:2]
+    for y in range(rows):
+        for x in range(columns):
+            for way in range(4):
+                v, u = y + OFFSETS[way][0], x + OFFSETS[way][1]
+                if v >= rows or u < 0 or u >= columns:
+                    grades[y, x, way] = NO_EDGE
+                    continue
+                grade = np.uint16(_step(colour, y, x, v, u) * np.float32(GRADES))
+                grades[y, x, way] = grade
+                counts[grade + 1] += 1
+
+
+@njit(cache=True, nogil=True)
+def _ascending(grades, counts, order):
+    """Edges (4 pixel + way, int32) by ascending grade; counts of lower grades are used up."""
+    flat = grades.reshape(-1)
+    for e in range(flat.size):
+        grade = flat[e]
+        if grade != NO_EDGE:
+            order[counts[grade]] = e
+            counts[grade] += 1
 
 
 @njit(cache=True, nogil=True)
 def superpixels(colour, breadth, smallest, home):
     """Felzenszwalb and Huttenlocher's segmentation: colour float32 (H, W, C) -> home int32 (H W), roots."""
     rows, columns = colour.shape[:2]
-    room = 4 * rows * columns
-    one, other = np.empty(room, np.int32), np.empty(room, np.int32)
-    weight = np.empty(room, np.float32)
-    count = _sorted_edges(colour, one, other, weight)
+    grades = np.empty((rows, columns, 4), np.uint16)
+    counts = np.zeros(NO_EDGE + 1, np.int64)
+    _graded_steps(colour, grades, counts)
+    counts = np.cumsum(counts)
+    count = counts[NO_EDGE]
+    order = np.empty(count, np.int32)
+    _ascending(grades, counts, order)
+    beyond = np.array([1, columns, columns + 1, columns - 1])
     size = np.ones(rows * columns, np.int32)
     limit = np.full(rows * columns, breadth, np.float32)
     for i in range(rows * columns):
         home[i] = i
-    for e in range(count):
-        a, b = _root(home, one[e]), _root(home, other[e])
-        if a != b and weight[e] <= limit[a] and weight[e] <= limit[b]:
-            home[b] = a
-            size[a] += size[b]
-            limit[a] = weight[e] + breadth / size[a]
-    for e in range(count):
-        a, b = _root(home, one[e]), _root(home, other[e])
+    for e in order:
+        a, b = _root(home, e >> 2), _root(home, (e >> 2) + beyond[e & 3])
+        if a != b:
+            way, i = e & 3, e >> 2
+            y, x = i // columns, i % columns
+            weight = _step(colour, y, x, y + OFFSETS[way][0], x + OFFSETS[way][1])
+            if weight <= limit[a] and weight <= limit[b]:
+                home[b] = a
+                size[a] += size[b]
+                limit[a] = weight + breadth / size[a]
+    for e in order:
+        a, b = _root(home, e >> 2), _root(home, (e >> 2) + beyond[e & 3])
         if a != b and (size[a] < smallest or size[b] < smallest):
             home[b] = a
             size[a] += size[b]
@@ -86,16 +102,20 @@ def superpixels(colour, breadth, smallest, home):
 
 
 @njit(cache=True, nogil=True)
-def listed(labels, count, starts, order):
-    """Pixels region by region: labels int32 (N,) -> starts int64 (count + 1,), order int32 (N,)."""
-    for i in range(labels.size):
-        starts[labels[i] + 1] += 1
-    for r in range(count):
+def listed(labels, starts, order):
+    """Pixels region by region: labels int32 (H, W) -> starts int64 (R + 1,), order int64 (H W,)."""
+    rows, columns = labels.shape
+    for y in range(rows):
+        for x in range(columns):
+            starts[labels[y, x] + 1] += 1
+    for r in range(starts.size - 1):
         starts[r + 1] += starts[r]
     place = starts[:-1].copy()
-    for i in range(labels.size):
-        order[place[labels[i]]] = i
-        place[labels[i]] += 1
+    for y in range(rows):
+        for x in range(columns):
+            r = labels[y, x]
+            order[place[r]] = (y << HALF) | x
+            place[r] += 1
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -117,99 +137,115 @@ def _solved(m, v):
 
 
 @njit(cache=True, nogil=True)
-def fitted(disparity, votes, columns, starts, order, settings, planes, support, share):
+def fitted(disparity, votes, starts, order, settings, planes, support, share):
     """A robust plane for each region.
 
     Hypotheses through three voters (every fourth level), scored by sum w max(0, 1 - r²); then reweighted
     least squares by Tukey's weight at 1.5 px with a ridge on the slopes.
 
-    disparity, votes: float32 (N,); settings: (hypotheses, steepest, reach, Tukey's width, ridge, most voters
-    looked at); planes float64 (R, 3); support float32 (R,): summed votes; share: votes within reach.
+    disparity, votes: float32 (H, W); settings: (hypotheses, steepest, reach, Tukey's width, ridge, about how many
+    voters a hypothesis is scored on); planes float64 (R, 3); support float32 (R,): summed votes; share: of votes
+    within reach.
     """
     hypotheses, steepest, reach, width, ridge, most = settings
-    voters = np.empty(order.size, np.int32)
+    voters = np.empty((4, order.size), np.float32)
+    xs, ys, ds, ws = voters[0], voters[1], voters[2], voters[3]
+    few = np.empty((4, order.size), np.float32)
+    found = np.zeros(3)
     for r in range(starts.size - 1):
         count, total = 0, 0.0
         for i in range(starts[r], starts[r + 1]):
-            if votes[order[i]] > 0:
-                voters[count] = order[i]
-                total += votes[order[i]]
+            y, x = order[i] >> HALF, order[i] & MASK
+            if votes[y, x] > 0:
+                xs[count], ys[count], ds[count], ws[count] = x, y, disparity[y, x], votes[y, x]
+                total += votes[y, x]
                 count += 1
         support[r] = total
         share[r] = 0.0
         if count < 3:
             continue
         stride = max(1, count // np.int64(most))
-        state = np.uint32(12345)
-        best, found = -1.0, np.zeros(3)
-        trial = np.zeros(3)
-        three = np.zeros(3, np.int64)
-        for h in range(np.int64(hypotheses)):
-            for j in range(3):
-                state = np.uint32(state * np.uint32(1664525) + np.uint32(1013904223))
-                three[j] = voters[np.int64(state >> np.uint32(8)) % count]
-            x0, y0, d0 = three[0] % columns, three[0] // columns, disparity[three[0]]
-            trial[0] = trial[1] = 0.0
-            trial[2] = d0
-            if h % 4:
-                x1, y1, d1 = three[1] % columns - x0, three[1] // columns - y0, disparity[three[1]] - d0
-                x2, y2, d2 = three[2] % columns - x0, three[2] // columns - y0, disparity[three[2]] - d0
-                det = x1 * y2 - x2 * y1
-                if det == 0:
-                    continue
-                a, b = (d1 * y2 - d2 * y1) / det, (x1 * d2 - x2 * d1) / det
-                if abs(a) > steepest or abs(b) > steepest:
-                    continue
-                trial[0], trial[1], trial[2] = a, b, d0 - a * x0 - b * y0
-            score = 0.0
-            for i in range(0, count, stride):
-                p = voters[i]
-                off = trial[0] * (p % columns) + trial[1] * (p // columns) + trial[2] - disparity[p]
-                score += votes[p] * max(0.0, 1 - (off / reach) ** 2)
-            if score > best:
-                best = score
-                found[:] = trial
-        _polished(disparity, votes, columns, voters[:count], (width, ridge, steepest), found)
+        scored = 0
+        for i in range(0, count, stride):
+            few[0, scored], few[1, scored], few[2, scored], few[3, scored] = xs[i], ys[i], ds[i], ws[i]
+            scored += 1
+        _best_of(xs[:count], ys[:count], ds[:count], few[:, :scored], (hypotheses, steepest, reach), found)
+        _polished(xs[:count], ys[:count], ds[:count], ws[:count], (width, ridge, steepest), found)
         near = 0.0
         for i in range(count):
-            p = voters[i]
-            off = found[0] * (p % columns) + found[1] * (p // columns) + found[2] - disparity[p]
-            if abs(off) < reach:
-                near += votes[p]
+            if abs(found[0] * xs[i] + found[1] * ys[i] + found[2] - ds[i]) < reach:
+                near += ws[i]
         share[r] = near / total
         planes[r] = found
 
 
+@njit(cache=True, nogil=True, fastmath=True)
+def _score(few, a, b, c, scale):
+    """Sum of w max(0, 1 - (r / reach)²) over (x, y, disparity, votes)."""
+    xs, ys, ds, ws = few[0], few[1], few[2], few[3]
+    score = np.float32(0)
+    for i in range(xs.size):
+        off = (a * xs[i] + b * ys[i] + c - ds[i]) * scale
+        score += ws[i] * max(np.float32(0), np.float32(1) - off * off)
+    return score
+
+
 @njit(cache=True, nogil=True)
-def _polished(disparity, votes, columns, voters, settings, plane):
+def _best_of(xs, ys, ds, few, settings, found):
+    """The best of planes through three voters each, drawn by a fixed sequence; every fourth is level."""
+    hypotheses, steepest, reach = settings
+    state = np.uint32(12345)
+    best = np.float32(-1)
+    three = np.zeros(3, np.int64)
+    for h in range(np.int64(hypotheses)):
+        for j in range(3):
+            state = np.uint32(state * np.uint32(1664525) + np.uint32(1013904223))
+            three[j] = np.int64(state >> np.uint32(8)) % xs.size
+        i, j, k = three
+        a, b, c = np.float32(0), np.float32(0), ds[i]
+        if h % 4:
+            x1, y1, d1 = xs[j] - xs[i], ys[j] - ys[i], ds[j] - ds[i]
+            x2, y2, d2 = xs[k] - xs[i], ys[k] - ys[i], ds[k] - ds[i]
+            det = x1 * y2 - x2 * y1
+            if det == 0:
+                continue
+            a, b = (d1 * y2 - d2 * y1) / det, (x1 * d2 - x2 * d1) / det
+            if abs(a) > steepest or abs(b) > steepest:
+                continue
+            c = ds[i] - a * xs[i] - b * ys[i]
+        score = _score(few, a, b, c, np.float32(1 / reach))
+        if score > best:
+            best = score
+            found[0], found[1], found[2] = a, b, c
+
+
+@njit(cache=True, nogil=True)
+def _polished(xs, ys, ds, ws, settings, plane):
     """Four steps of reweighted least squares, in place."""
     width, ridge, steepest = settings
-    matrix, side, at = np.zeros((3, 3)), np.zeros(3), np.ones(3)
+    matrix, side = np.zeros((3, 3)), np.zeros(3)
+    mx, my = np.sum(ws * xs) / np.sum(ws), np.sum(ws * ys) / np.sum(ws)
     for _ in range(4):
-        mx, my, total = 0.0, 0.0, 0.0
-        for p in voters:
-            mx += votes[p] * (p % columns)
-            my += votes[p] * (p // columns)
-            total += votes[p]
-        mx, my = mx / total, my / total
-        matrix[:] = 0
-        side[:] = 0
-        for p in voters:
-            x, y = p % columns, p // columns
-            off = plane[0] * x + plane[1] * y + plane[2] - disparity[p]
+        sxx = sxy = syy = sx = sy = s = sxd = syd = sd = 0.0
+        for i in range(xs.size):
+            off = plane[0] * xs[i] + plane[1] * ys[i] + plane[2] - ds[i]
             t = 1 - (off / width) ** 2
-            if t <= 0:
-                continue
-            w = votes[p] * t * t
-            at[0], at[1] = x - mx, y - my
-            for i in range(3):
-                side[i] += w * at[i] * disparity[p]
-                for j in range(3):
-                    matrix[i, j] += w * at[i] * at[j]
-        if matrix[2, 2] <= 0:
+            w = ws[i] * t * t if t > 0 else 0.0
+            x, y = xs[i] - mx, ys[i] - my
+            sxx += w * x * x
+            sxy += w * x * y
+            syy += w * y * y
+            sx += w * x
+            sy += w * y
+            s += w
+            sxd += w * x * ds[i]
+            syd += w * y * ds[i]
+            sd += w * ds[i]
+        if s <= 0:
             return
-        matrix[0, 0] += ridge
-        matrix[1, 1] += ridge
+        matrix[0, 0], matrix[0, 1], matrix[0, 2] = sxx + ridge, sxy, sx
+        matrix[1, 1], matrix[1, 2], matrix[2, 2] = syy + ridge, sy, s
+        side[0], side[1], side[2] = sxd, syd, sd
         new = _solved(matrix, side)
         if abs(new[0]) > steepest or abs(new[1]) > steepest:
             return
@@ -260,26 +296,26 @@ def _sight(x, y, value, right):
 
 
 @njit(cache=True, nogil=True)
-def energies(disparity, votes, right, views, listing, planes, candidates, span, costs, coverage):
+def energies(disparity, votes, right, views, listing, planes, candidates, span, prices, costs, coverage):
     """What each candidate plane costs each region, in [0, 1], and how it suits the region's own voters.
 
     disparity, votes, right: float32 (H, W), right NaN where unknown; views: census words of both, uint64;
     listing: (starts, order); candidates: (region, plane) int32 (M, 2); span: least and largest disparity;
+    prices: of a pixel without a vote that the right view cannot see, outside it or hidden;
     costs float32 (M,); coverage float32 (M, 2): share of votes within 1 px, votes a pixel.
     """
     here, there_words = views
     starts, order = listing
-    columns = disparity.shape[1]
     low, high = span
+    outside, occluded = prices
     for m in range(candidates.shape[0]):
         r = candidates[m, 0]
         a, b, c = planes[candidates[m, 1]]
         total, weights, near, voted = 0.0, 0.0, 0.0, 0.0
-        stride = max(1, (starts[r + 1] - starts[r]) // 1500)
+        stride = max(1, (starts[r + 1] - starts[r]) // 500)
         looked = 0
         for i in range(starts[r], starts[r + 1], stride):
-            p = order[i]
-            y, x = p // columns, p % columns
+            y, x = order[i] >> HALF, order[i] & MASK
             value = np.float32(a * x + b * y + c)
             w = votes[y, x]
             looked += 1
@@ -295,8 +331,10 @@ def energies(disparity, votes, right, views, listing, planes, candidates, span, 
             sight, there = _sight(x, y, value, right)
             if value < low or value > high or sight == VIOLATED:
                 total += 0.5
-            elif sight != SEEN:
-                total += 0.15
+            elif sight == OUTSIDE:
+                total += 0.5 * outside
+            elif sight == OCCLUDED:
+                total += 0.5 * occluded
             else:
                 total += 0.5 * min(_bits(here[y, x] ^ there_words[y, there]) / 40, 1.0)
         costs[m] = total / weights if weights > 0 else 1.0

@@ -12,7 +12,7 @@ from visint_grouping.planes.votes import Ballot
 
 __all__ = ["Chosen", "Limits", "chosen_planes"]
 
-HYPOTHESES, STEEPEST, REACH, WIDTH, RIDGE, LOOKED_AT = 100, 0.6, 1.0, 1.5, 400.0, 1000
+HYPOTHESES, STEEPEST, REACH, WIDTH, RIDGE, LOOKED_AT = 60, 0.6, 1.0, 1.5, 400.0, 250
 """Fitting: planes tried, the steepest slope (px of disparity a px), px within which a voter is for a plane,
 Tukey's width, votes·px² that hold slopes back, voters that a hypothesis is scored on."""
 SUPPORT, SHARE = 20.0, 0.5
@@ -20,6 +20,8 @@ SUPPORT, SHARE = 20.0, 0.5
 FOREIGN, TINT, AGREEMENT = 0.03, 0.1, 0.1
 """Energy: what a plane from elsewhere costs, what another colour adds (all of it from 40 grey levels on), and
 what is gained where all neighbours have the same plane."""
+UNSEEN = (0.3, 0.3)
+"""Energy of a pixel without a vote that the right view cannot see: outside its image, and hidden."""
 FEW = 0.02
 """Votes a pixel below which a region's own voters are not asked."""
 SWEEPS = 2
@@ -53,7 +55,7 @@ def chosen_planes(
     costs = np.empty(len(candidates), np.float32)
     coverage = np.empty((len(candidates), 2), np.float32)
     views = words if words is not None else (np.zeros(labels.shape, np.uint64),) * 2
-    _kernels.energies(*ballot, views, listing, planes, candidates, ballot.span, costs, coverage)
+    _kernels.energies(*ballot, views, listing, planes, candidates, ballot.span, UNSEEN, costs, coverage)
     costs += _distance(labels, levels, listing, candidates)
     best = np.full(count, -1, np.int64)
     _kernels.settled(costs, offsets, candidates, tuple(around), SWEEPS, AGREEMENT, best)
@@ -66,10 +68,8 @@ def _fitted(ballot: Ballot, listing: Listing) -> tuple[Array, Array]:
 
     count = len(listing.starts) - 1
     planes, support, share = np.zeros((count, 3)), np.zeros(count, np.float32), np.zeros(count, np.float32)
-    columns = ballot.disparity.shape[1]
     settings = (HYPOTHESES, STEEPEST, REACH, WIDTH, RIDGE, LOOKED_AT)
-    flat = (ballot.disparity.reshape(-1), ballot.votes.reshape(-1))
-    _kernels.fitted(*flat, columns, *listing, settings, planes, support, share)
+    _kernels.fitted(ballot.disparity, ballot.votes, *listing, settings, planes, support, share)
     return planes, (support >= SUPPORT) & (share >= SHARE)
 
 

@@ -13,7 +13,7 @@ __all__ = ["Listing", "Neighbours", "listing_of", "neighbours_of"]
 
 
 class Listing(NamedTuple):
-    """Flat pixels region by region: those of r are ``order[starts[r]:starts[r + 1]]``."""
+    """Pixels (row << 20 | column) region by region: those of r are ``order[starts[r]:starts[r + 1]]``."""
 
     starts: Array
     order: Array
@@ -36,8 +36,8 @@ def listing_of(labels: Array, count: int) -> Listing:
     """The pixels of each of ``count`` regions; labels int32 (H, W) from 0."""
     from visint_grouping.planes import _kernels
 
-    starts, order = np.zeros(count + 1, np.int64), np.empty(labels.size, np.int32)
-    _kernels.listed(labels.reshape(-1), count, starts, order)
+    starts, order = np.zeros(count + 1, np.int64), np.empty(labels.size, np.int64)
+    _kernels.listed(labels, starts, order)
     return Listing(starts, order)
 
 
