@@ -37,6 +37,7 @@ def _page(folder: Path) -> Iterator[str]:
     yield "Drawn from their files, as `visint show NAME --html` does, and run when this page was"
     yield f"built: the demonstration scene of the lab at {SIZE} × {SIZE} pixels (a sphere of one albedo for"
     yield "`one_view`). Pictures of this size show what a graph gives, not how good it is."
+    yield "\n```{raw} html\n<style>.visint-graph{max-width:100%;height:auto}</style>\n```"
     for name, path in sorted(installed().graphs().items()):
         yield from _graph(name, path, folder)
 
@@ -45,7 +46,7 @@ def _graph(name: str, path: Path, folder: Path) -> Iterator[str]:
     graph = visint.load(path)
     yield f"\n## {name}\n\n{graph.spec.about}\n"
     svg = re.sub(r"\n\s*\n", "\n", drawing.to_svg(graph.spec))  # Markdown ends raw HTML at an empty line
-    yield f"```{{raw}} html\n{svg}\n```\n"
+    yield f'```{{raw}} html\n<div style="overflow-x:auto">{svg}</div>\n```\n'
     result = visint.run(graph, _inputs(graph, name))
     shown = {port: value for port, value in result.items() if is_map(value)}
     strip = np.hstack([_tile(result.kinds[port], value) for port, value in shown.items()])

@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from docstrings import parameters_in, prose
+
 __all__ = ["write_all"]
 
 DOI = re.compile(r"doi:\s*(10\.\d{4,}/[^\s,;]+[^\s,;.)])", re.IGNORECASE)
@@ -64,7 +66,7 @@ def modules() -> Iterator[str]:
 
 def _module(name: str, module: Any) -> Iterator[str]:
     about = inspect.getdoc(module) or ""
-    yield f"\n### {name}\n\n```text\n{about}\n```\n"
+    yield f"\n### {name}\n\n{prose(about)}\n"
     sources = sorted(set(DOI.findall(about)))
     if sources:
         yield "Source: " + ", ".join(f"[doi:{doi}](https://doi.org/{doi})" for doi in sources) + "\n"
@@ -79,18 +81,21 @@ def _module(name: str, module: Any) -> Iterator[str]:
 
 
 def _notes(module: Any) -> Iterator[str]:
-    for title, model in (("Inputs", module.Inputs), ("Outputs", module.Outputs)):
+    for title, model in (("in", module.Inputs), ("out", module.Outputs)):
         if model.__module__ != "visint.module" and vars(model).get("__doc__"):
-            yield f"\n**{title}**\n\n```text\n{inspect.getdoc(model)}\n```"
+            yield f"\n*{title}:* {prose(inspect.getdoc(model) or '')}"
 
 
 def _parameters(params: Any) -> Iterator[str]:
     if not params.model_fields:
         return
-    yield "\n**Parameters**\n\n| parameter | default |\n|---|---|"
+    told = parameters_in(inspect.getdoc(params) or "")
+    yield "\n| parameter | default | |\n|---|---|---|"
     for name, field in params.model_fields.items():
-        yield f"| `{name}` | {'required' if field.is_required() else f'`{field.default!r}`'} |"
-    yield f"\n```text\n{inspect.getdoc(params)}\n```"
+        default = "required" if field.is_required() else f"`{field.default!r}`"
+        yield f"| `{name}` | {default} | {told.get(name, '')} |"
+    if not told:  # a line of prose does for one parameter
+        yield f"\n{prose(inspect.getdoc(params) or '')}"
 
 
 def _rests_on(module: Any) -> Iterator[str]:
@@ -127,7 +132,7 @@ def hooks() -> Iterator[str]:
     for name, hook in vars(hookspecs).items():
         if name.startswith("visint_"):
             signature = f"```python\ndef {name}{inspect.signature(hook)}\n```"
-            yield f"\n## {name}\n\n{signature}\n\n{inspect.getdoc(hook)}"
+            yield f"\n## {name}\n\n{signature}\n\n{prose(inspect.getdoc(hook) or '')}"
 
 
 def kinds() -> Iterator[str]:

@@ -1,7 +1,7 @@
 """Makes the pictures of a report that the docs show.
 
-``python docs/tutorial/report_pictures.py REPORT PICTURE [TOP]``: REPORT is a ``report.html``, PICTURE a ``.jpg``,
-TOP a section to begin at (``surface``, ``outputs``). Needs selenium, Chromium and its driver.
+``python docs/tutorial/report_pictures.py REPORT PICTURE [TOP]``: REPORT is a ``report.html``, PICTURE a
+``.jpg``, TOP a section to begin at (``surface``, ``outputs``). Needs selenium, Chromium and its driver.
 """
 
 from __future__ import annotations

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import importlib.util
 import inspect
+import json
+import re
 from pathlib import Path
 from types import ModuleType
 
@@ -13,10 +15,19 @@ from visint import hookspecs
 from visint.errors import CODES
 from visint.fields.assumptions import ASSUMPTIONS
 from visint.fields.kinds import KINDS
+from visint.graph import json_schema
 from visint.registry import installed
 from visint.registry.discover import discover
 
 DOCS = Path(__file__).parents[2] / "docs"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def beside():
+    """The docs' own modules find each other as they do when the site is built."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(DOCS))
+        yield
 
 
 def from_docs(name: str) -> ModuleType:
@@ -54,8 +65,11 @@ def test_every_module_says_what_it_does_and_its_parameters_what_turning_them_doe
     for plugin in catalog.plugin_names:
         for module in catalog.plugin(plugin).modules.values():
             assert inspect.getdoc(module), f"{plugin}.{module.name}"
-            told = inspect.getdoc(module.Params) or ""
-            silent = [name for name in module.Params.model_fields if name not in told]
+            text = inspect.getdoc(module.Params) or ""
+            told = from_docs("docstrings").parameters_in(text) or dict.fromkeys(
+                re.findall(r"``(\w+)``", text), text
+            )
+            silent = [name for name in module.Params.model_fields if not told.get(name)]
             assert not silent, f"{plugin}.{module.name}: {silent}"
 
 
@@ -82,8 +96,6 @@ def test_every_error_code(pages):
 
 def test_every_code_that_is_raised_is_in_the_table():
     """And every one of the table is raised somewhere: a code nobody can meet misleads."""
-    import re
-
     root = DOCS.parent
     code = [path for top in ("visint", "plugins") for path in (root / top).rglob("*.py")]
     raised = {
@@ -113,10 +125,6 @@ def test_every_verb(pages):
 
 
 def test_the_schema_is_the_one_that_is_printed(pages):
-    import json
-
-    from visint.graph import json_schema
-
     assert json.dumps(json_schema(), indent=1) in pages["schema"]
 
 
@@ -127,6 +135,28 @@ def test_every_page_is_in_the_table_of_contents():
     written = [page for page in DOCS.rglob("*.md") if not apart & set(page.parts)]
     names = {page.relative_to(DOCS).with_suffix("").as_posix() for page in written}
     assert names - {"index"} <= set(listed)
+
+
+class TestDocstrings:
+    """As Markdown: signs are text, code is code."""
+
+    def test_prose(self):
+        prose = from_docs("docstrings").prose
+        assert prose("One\ntwo ``a_b`` n_z * 2 [1].") == "One two `a_b` n\\_z \\* 2 \\[1\\]."
+        assert prose("See :func:`visint.run`.\n\n    x = 1\n\nEnd.") == (
+            "See `visint.run`.\n\n```text\n    x = 1\n```\n\nEnd."
+        )
+        assert prose("* one\n  more\n* two") == "* one more\n* two"
+
+    def test_parameters(self):
+        """Each with all of its lines, two of one name line apart."""
+        text = "About.\n\nParameters\n----------\na, b\n    First | line\n    and second.\nc\n    Third.\n"
+        assert from_docs("docstrings").parameters_in(text) == {
+            "a": "First \\| line and second.",
+            "b": "First \\| line and second.",
+            "c": "Third.",
+        }
+        assert from_docs("docstrings").parameters_in("About.") == {}
 
 
 class TestLinkCheck:
