@@ -27,7 +27,7 @@ def command(
     pair: Annotated[str, typer.Argument(help="A folder with a pair and its truth, or a scene's name.")],
     truth: Annotated[Path | None, typer.Option(help="Another folder to take the truth from.")] = None,
     size: Annotated[int, typer.Option(min=32, max=2048, help="Rows and columns of a rendered scene.")] = 512,
-    out: Annotated[Path | None, typer.Option(help="Folder for ablation.csv.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for ablation.csv and contributions.csv.")] = None,
 ) -> None:
     """Show what each cue adds: a graph as it is, by its controls, without each spoke.
 
@@ -55,19 +55,20 @@ def command(
     own = contributions(variants[0], variants, found, made[str(variants[0])].shares)
     if own:
         print(f"\nWhat {graph} gains by a cue, % of each error; and how much of the depth the cue decided")
-        print(_contributed(own))
+        print(aligned(*_contributed(own)))
     else:
         print(f"\n{graph} names no controls and has no spokes: there is nothing to leave out.")
     if out is not None:
-        _save(out, as_csv(["", *keys], rows))
+        _save(out, {"ablation.csv": as_csv(["", *keys], rows), "contributions.csv": as_csv(*_contributed(own))})
 
 
-def _contributed(own: list[Contribution]) -> str:
-    from visint_lab.trials.grid import aligned, number
+def _contributed(own: list[Contribution]) -> tuple[list[str], list[list[str]]]:
+    """The head and the rows of the table of contributions."""
+    from visint_lab.trials.grid import number
 
-    keys = list(own[0].gains)
+    keys = list(own[0].gains) if own else []
     rows = [[one.taken, *(number(one.gains.get(key)) for key in keys), number(100 * one.share)] for one in own]
-    return aligned(["", *keys, "decided, %"], rows)
+    return ["", *keys, "decided, %"], rows
 
 
 def _pair(name: str, truth: Path | None, size: int) -> tuple[Pair, visint.Light | None]:
@@ -86,9 +87,10 @@ def _pair(name: str, truth: Path | None, size: int) -> tuple[Pair, visint.Light 
     return found[0]
 
 
-def _save(out: Path, text: str) -> None:
+def _save(out: Path, tables: dict[str, str]) -> None:
     from visint.io import make_folder, write_text
 
     make_folder(out)
-    write_text(out / "ablation.csv", text)
-    print((out / "ablation.csv").resolve(), file=sys.stderr)
+    for name, text in tables.items():
+        write_text(out / name, text)
+        print((out / name).resolve(), file=sys.stderr)

@@ -102,6 +102,8 @@ def test_the_command_prints_both_tables(graph, pair, tmp_path):
     mae = done.stdout.split("gains by a cue")[1].splitlines()[1].split().index("mae")
     assert float(lines["without honest"][2 + mae]) == pytest.approx(100 * (1 - WHOLE / LIES), abs=0.1)
     assert float(lines["control liar"][2 + mae]) == pytest.approx(100 * (1 - WHOLE / ALONE), abs=0.1)
+    told = list(csv.reader((tmp_path / "out" / "contributions.csv").read_text().splitlines()))
+    assert [row[0] for row in told[1:]] == ["control liar", "without honest", "without liar"]
     rows = list(csv.reader((tmp_path / "out" / "ablation.csv").read_text().splitlines()))
     assert [row[0].removeprefix(graph) for row in rows[1:]] == [
         "",
