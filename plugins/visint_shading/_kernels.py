@@ -310,10 +310,11 @@ def heights(conic, labels, seeds, tolerance, rounds, cost, sign):
                         continue
                     across = 0 <= x - dx < columns and labels[y, x - dx] == label and sign[y, x - dx] != 0
                     down = 0 <= y - dy < rows and labels[y - dy, x] == label and sign[y - dy, x] != 0
-                    if not (across or down):
+                    best = cost[y, x]
+                    # steps cost something: only a cheaper neighbour can better a pixel
+                    if not ((across and cost[y, x - dx] < best) or (down and cost[y - dy, x] < best)):
                         continue
                     a, b, c = conic[0, y, x], conic[1, y, x], conic[2, y, x]
-                    best = cost[y, x]
                     kind = sign[y, x]
                     det = a * c - b * b
                     if across:

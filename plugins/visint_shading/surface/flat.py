@@ -16,10 +16,11 @@ CONTRAST = 0.05
 def flat_regions(even: Array, labels: Array) -> Array:
     """Bool (N + 1,): brightness hardly changes over the region, so that it turns nowhere."""
     count = int(labels.max(initial=0)) + 1
-    value = np.where(labels > 0, even, 0).ravel()
-    members = np.maximum(np.bincount(labels.ravel(), minlength=count), 1)
-    mean = np.bincount(labels.ravel(), value, minlength=count) / members
-    square = np.bincount(labels.ravel(), value * value, minlength=count) / members
+    inside = np.flatnonzero(labels)
+    label, value = labels.ravel()[inside], even.ravel()[inside].astype(np.float64)
+    members = np.maximum(np.bincount(label, minlength=count), 1)
+    mean = np.bincount(label, value, minlength=count) / members
+    square = np.bincount(label, value * value, minlength=count) / members
     found = np.sqrt(np.maximum(square - mean**2, 0)) < CONTRAST * mean
     found[0] = False
     return np.asarray(found)
