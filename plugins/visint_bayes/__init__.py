@@ -18,6 +18,8 @@ def visint_modules() -> list[Any]:
     from visint_bayes.coherence.orientation import CohereNormals
     from visint_bayes.depth import Depth
     from visint_bayes.gradient import Gradient
+    from visint_bayes.joint.module import Joint
+    from visint_bayes.joint.surface import Surface
     from visint_bayes.pairwise import Pairwise
     from visint_bayes.pointwise import Pointwise
     from visint_bayes.strategies.description_length import DescriptionLength
@@ -28,7 +30,7 @@ def visint_modules() -> list[Any]:
 
     coherence = [CohereBoundaries, CohereDepth, CohereDisparity, CohereNormals]
     strategies = [DescriptionLength, FaultLattice, Game, Mrf, Relaxation]
-    return [*coherence, *strategies, Boundaries, Depth, Gradient, Pairwise, Pointwise]
+    return [*coherence, *strategies, Boundaries, Depth, Gradient, Joint, Pairwise, Pointwise, Surface]
 
 
 @hookimpl

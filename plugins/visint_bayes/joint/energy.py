@@ -14,7 +14,7 @@ from visint_bayes.joint.domain import Domain
 from visint_bayes.joint.multigrid import Multigrid
 from visint_bayes.joint.photometry import Views, data_term
 
-__all__ = ["Recipe", "Setting", "bends_of", "minimum", "precision", "slopes_of"]
+__all__ = ["Recipe", "Setting", "bends_of", "data_precision", "minimum", "slopes_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,10 +131,10 @@ def minimum(setting: Setting, recipe: Recipe, start: Array | None = None) -> Arr
     return surface
 
 
-def precision(setting: Setting, recipe: Recipe, surface: Array) -> tuple[Array, Multigrid, tuple[slice, slice]]:
-    """The diagonal of the energy's matrix (px⁻²) at a surface, its solver, and the box that both cover."""
-    system = _linearised(setting, recipe, surface)
-    return system.matrix[..., 12], Multigrid(system.matrix, system.domain.pieces), system.box
+def data_precision(setting: Setting, surface: Array) -> Array:
+    """(H, W): weight of the photometric data at a surface, px⁻², 0 outside the domain."""
+    weight = data_term(setting.views, surface, setting.gap).weight
+    return np.where(setting.domain.inside & ~setting.unseen, weight, 0)
 
 
 def _linearised(setting: Setting, recipe: Recipe, surface: Array) -> _System:
