@@ -172,7 +172,14 @@ class Problem:
             )
             if part
         )
-        return f"{head}\n  {tail}"
+        return f"{_printable(head)}\n  {_printable(tail)}"
+
+
+def _printable(text: str) -> str:
+    """What a file brings into a message shall not steer a terminal."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
 class VisintError(Exception):
