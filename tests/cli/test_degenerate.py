@@ -138,3 +138,16 @@ def test_unknown_pixels_in_a_pfm(visint, tmp_path, files, unknown):
     disparity = files.pfm(tmp_path / "out/disparity.pfm")
     far = np.s_[26:-4, 10:-4]
     assert np.mean(np.abs(disparity[far] - SHIFT) < 1) > 0.95
+
+
+def test_an_unrectified_pair(matched, files):
+    """The right camera is turned by 6° about its axis: what no row can match is not sure."""
+    scene = (files.texture(80, 100 + SHIFT) * 255).astype(np.uint8)
+    left, right = scene[:, :-SHIFT], scene[:, SHIFT:]
+    turn = cv2.getRotationMatrix2D((49.5, 39.5), 6, 1)
+    turned = cv2.warpAffine(right, turn, (100, 80), flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_REFLECT)
+    _, straight, _ = matched(left, right, "--disparity-range", "0,15")
+    _, sure, _ = matched(left, turned, "--disparity-range", "0,15")
+    beyond = np.s_[4:-4, 18:30], np.s_[4:-4, -20:-4]  # rows apart by sin 6° × the distance from the axis
+    assert straight.mean() > sure.mean() + 0.3
+    assert all(sure[part].mean() < 0.5 for part in beyond)
