@@ -9,6 +9,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
+import visint
 from visint.io import encode_pfm, encode_png
 from visint.testing import installed
 from visint_lab import ablate
@@ -136,3 +137,17 @@ def test_a_perfect_variant_and_an_equal_one():
     found = contributions(whole, variants, scores, {})
     assert [one.gains["mae"] for one in found] == [float("-inf"), 0.0]
     assert all(np.isnan(one.share) for one in found)
+
+
+@pytest.mark.slow
+def test_chapter_fives_graph():
+    """Every cue of `uniform_bayesian` has its row, every control too; stereo decides most of the depth."""
+    done = called("uniform_bayesian", "a/sphere/lambertian", "--size", 64)
+    assert done.exit_code == 0
+    told = done.stdout.split("gains by a cue")[1]
+    spec = visint.load("uniform_bayesian").spec
+    rows = {line.split("  ")[0]: line.split() for line in told.splitlines()[3:]}
+    wanted = [f"control {name}" for name in spec.controls] + [f"without {cue}" for cue in spec.hub.order]
+    assert list(rows) == wanted
+    assert float(rows["without stereo"][-1]) > 50
+    assert rows["without diffusion"][-1] == "–", "it knows nothing but the map"
