@@ -1,4 +1,5 @@
 # mypy: ignore-errors
+# ruff: noqa: PLR0917 - kernels take what they need
 """Kernels of consistency mapping."""
 
 from __future__ import annotations
@@ -68,7 +69,7 @@ def step(value, sigma, trust, before, sure, reached, strengths, after, confidenc
                 if bits >> k & 1:
                     v, u = y + (k == 2) - (k == 0), x + (k == 1) - (k == 3)
                     near = before[v, u]
-                    if near == near:
+                    if not np.isnan(near):
                         total += near
                         n += one
                         around += sure[v, u]
@@ -103,18 +104,18 @@ def bend_down(depth, told, trust, sure, reached, alpha, pixels, after, confidenc
         for x in range(columns):
             here = depth[y, x]
             after[y, x], confidence[y, x] = here, sure[y, x]
-            if not trust[y, x] > 0 or not here == here:
+            if not trust[y, x] > 0 or np.isnan(here):
                 continue
             bits = reached[y, x]
             bend, axes = np.float32(0), 0
             if bits & 1 and bits & 4:
                 pair = half * (depth[y - 1, x] + depth[y + 1, x]) - here
-                if pair == pair:
+                if not np.isnan(pair):
                     bend += pair
                     axes += 1
             if bits & 2 and bits & 8:
                 pair = half * (depth[y, x - 1] + depth[y, x + 1]) - here
-                if pair == pair:
+                if not np.isnan(pair):
                     bend += pair
                     axes += 1
             if axes == 0:
@@ -138,7 +139,7 @@ def bend_down(depth, told, trust, sure, reached, alpha, pixels, after, confidenc
 
 @njit(cache=True, nogil=True)
 def slopes_of(normals, depth, focal, cx, cy, slopes):
-    """Slopes per pixel (H, W, 2) of a surface at ``depth`` with these ``normals``; NaN where seen from behind."""
+    """Slopes per pixel (H, W, 2) of a surface at ``depth`` with these ``normals``; NaN if seen from behind."""
     rows, columns = depth.shape
     for y in range(rows):
         for x in range(columns):

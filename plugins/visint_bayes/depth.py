@@ -66,9 +66,9 @@ class Depth(Module[DepthParams, DepthInputs, DepthOutputs]):
     Eqs. 5.39 and 5.40 do; where neither evidence nor neighbour speaks, the map stays.
 
     The confidence is that of the Kalman filter whose gain this is: what the neighbours predict has the variance
-    v̄ + 1/λ (v̄ that of their mean confidence), the evidence R = σ²/reliability, and the new variance is 1/(1/(v̄ + 1/λ) + 1/R). So it
-    grows by 1/λ a pixel away from evidence, and twenty looks at the same images do not pass for twenty
-    measurements.
+    v̄ + 1/λ (v̄ that of their mean confidence), the evidence R = σ²/reliability, and the new variance is
+    1/(1/(v̄ + 1/λ) + 1/R). So it grows by 1/λ a pixel away from evidence, and twenty looks at the same images do
+    not pass for twenty measurements.
     """
 
     name = "depth"
@@ -87,7 +87,8 @@ class Depth(Module[DepthParams, DepthInputs, DepthOutputs]):
         sure = np.zeros_like(before) if inputs.depth_confidence is None else inputs.depth_confidence
         after, confidence = np.empty_like(before), np.empty_like(before)
         strengths = np.array([self.params.smoothness, self.params.sharpest, ctx.scale**2], np.float32)
-        _kernels.step(said.value, said.sigma, said.reliability, before, sure, reached, strengths, after, confidence)
+        told = (said.value, said.sigma, said.reliability)
+        _kernels.step(*told, before, sure, reached, strengths, after, confidence)
         if self.params.solve == "solved":
             after = self._solved(said, before, reached, ctx)
         depth = depth_from_disparity(after, camera)

@@ -75,7 +75,8 @@ class Gradient(Module[GradientParams, GradientInputs, GradientOutputs]):
         told = _bend(evidence, depth, camera, reached)
         after, confidence = np.empty_like(depth), np.empty_like(depth)
         numbers = (np.float32(self.params.alpha), np.float32(ctx.scale * camera.focal_length * camera.baseline))
-        moved = _kernels.bend_down(depth, told, evidence.reliability, sure, reached, *numbers, after, confidence)
+        trust = evidence.reliability
+        moved = _kernels.bend_down(depth, told, trust, sure, reached, *numbers, after, confidence)
         ctx.measure("against", moved / depth.size)
         return GradientOutputs(depth=after, depth_confidence=confidence)
 

@@ -30,7 +30,7 @@ def links(lines, reached):
 
 @njit(cache=True, nogil=True)
 def owners(labels, field, owned):
-    """Sets ``owned`` int32 (H, W) to the labels, each 0 taking the neighbour's whose value is nearest to its own.
+    """Sets ``owned`` int32 (H, W) to the labels, each 0 taking that of the neighbour whose value is nearest.
 
     Where its own value or all neighbours' are unknown, the first of them; 0 stays where there is no neighbour.
     """
@@ -48,7 +48,7 @@ def owners(labels, field, owned):
                 off = abs(field[v, u] - field[y, x])
                 if owned[y, x] == 0 or off < nearest:
                     owned[y, x] = labels[v, u]
-                    nearest = off if off == off else nearest
+                    nearest = nearest if np.isnan(off) else off
 
 
 @njit(cache=True, nogil=True)

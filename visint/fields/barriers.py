@@ -42,8 +42,8 @@ def links_within(boundaries: Array | None, field: Array) -> Array:
     """The same for the regions that boundaries close, each pixel of a line belonging to one of them.
 
     Boundaries have no width: a line's pixel belongs to the region beside it whose ``field`` is nearest to its
-    own, and shares what it knows with it. A line that closes nothing bars nothing. Where lines are so thick that
-    a pixel touches no region, it has no neighbours.
+    own, and shares what it knows with it. A line that closes nothing bars nothing. Where lines are so thick
+    that a pixel touches no region, it has no neighbours.
 
     Parameters
     ----------

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-# ruff: noqa: PLR0917 - kernels take what they need
+# ruff: noqa: PLR0917, PLR1714 - kernels take what they need; numba knows no mixed tuples
 """The kernel of coherence: variances and medians of small sets of neighbours, a row at a time."""
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ def cohere(predicted, own, told, prior, reached, neighbours, limit, value, kept,
 
 @njit(cache=True, nogil=True)
 def _gather(predicted, told, reached, neighbours, y, members, there, count, kept):
-    """The predictions for the pixels of row ``y`` by neighbour, 0 where there is none, and what they are worth."""
+    """The predictions for the pixels of row ``y`` by neighbour, 0 if there is none, and what they are worth."""
     channels, _, columns = predicted.shape
     count[:] = 0
     worth, width = kept[0, y], kept[1, y]
@@ -260,7 +260,7 @@ def across_lines(lines, labels, field, sure, reach, count, step, bend, trust):
                 if a == 0:
                     continue
                 b = _ray(lines, labels, field, sure, y, x, down, across, reach, after)
-                if b == 0 or a == b:
+                if b == 0 or b == a:
                     continue
                 # slopes are told away from the line, so going from before to after the first has the other sign
                 miss = (after[1] - after[2] * after[0]) - (before[1] - before[2] * before[0])

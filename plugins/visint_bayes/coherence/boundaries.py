@@ -55,8 +55,8 @@ class CohereBoundariesOutputs(Ports):
 class CohereBoundaries(Module[CohereBoundariesParams, CohereBoundariesInputs, CohereBoundariesOutputs]):
     """Boundaries of the image across which a sure map is one smooth surface are dropped: they are marks on it.
 
-    Chapter 5 wants "significant 3-D boundaries" of grouping, and coherence to refine the segmentation, but gives
-    no rule. Here two regions are asked what they predict at their common border: on the average along it, either
+    Chapter 5 wants boundaries in space of grouping, and coherence to refine the segmentation, but gives no
+    rule. Here two regions are asked what they predict at their common border: on the average along it, either
     side is continued straight to the line, and where the two neither miss each other nor bend, and the map is
     sure on both sides, the line is taken back. As long as the map is not sure it stays.
 
@@ -67,7 +67,7 @@ class CohereBoundaries(Module[CohereBoundariesParams, CohereBoundariesInputs, Co
     assumptions = ("coherence", "smoothness")
 
     def run(self, inputs: CohereBoundariesInputs, ctx: Context) -> CohereBoundariesOutputs:
-        """Evidence of the images' size; where a line was dropped it says, as surely as before, that there is none."""
+        """Evidence of the images' size; where a line was dropped it says so, no less surely."""
         import cv2
 
         ctx.check()

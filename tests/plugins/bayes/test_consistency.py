@@ -89,7 +89,7 @@ class TestEq510:
         assert np.allclose(found.sigma**2, 0.4)
 
     def test_half_sure_counts_half(self):
-        """Reliability ½ is twice the variance, 0 nothing at all; nobody speaks: the map stays, as sure as ever."""
+        """Reliability ½ is twice the variance, 0 nothing; where nobody speaks the map stays, sure as ever."""
         certain = DepthEvidence.of(field(1), 1.0, 1.0)
         half = DepthEvidence.of(field(4), 1.0, np.where(np.arange(12) < 6, 0.5, 0.0).astype(np.float32))
         found = Pointwise().run(PointwiseInputs(depth_evidence=(certain, half), depth=field(9)), Context())
@@ -197,7 +197,7 @@ class TestConfidence:
 
     def test_bending_without_stereo_makes_it_less_sure(self):
         """Where a step moved the surface its confidence falls; elsewhere it stays."""
-        y, x = np.mgrid[:8, :12].astype(np.float32)
+        _, x = np.mgrid[:8, :12].astype(np.float32)
         depth = 20 + 0.3 * (x - 5) ** 2
         relief = ReliefEvidence.of(-depth, 0.1, np.where(x < 6, 1, 0).astype(np.float32))
         given = {"relief_evidence": relief, "depth": depth, "depth_confidence": field(0.8), "camera": CAMERA}
@@ -227,7 +227,7 @@ class TestEq580:
         assert np.array_equal(found, self.bowl())
 
     def test_the_control_is_the_mean_alone(self):
-        """α = 0: the neighbours' mean, wherever the cue bends against the map; its amplitude does not matter."""
+        """α = 0: the neighbours' mean where the cue bends against the map; its amplitude does not matter."""
         one, other = (
             self.run(0.0, relief_evidence=ReliefEvidence.of(self.bowl(-size), 0.1, 1.0)) for size in (1, 50)
         )
