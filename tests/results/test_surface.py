@@ -90,10 +90,11 @@ class Draws:
 
     visint_contract = 1
     drawn = HOSTILE
+    names = ("depth",)
 
     @hookimpl
     def visint_writers(self):
-        return {"Depth": lambda name, value: {f"{name}.svg": self.drawn, f"{name}.txt": b"text"}}
+        return {"Depth": lambda name, value: {f"{one}.svg": self.drawn for one in self.names} | {"x.txt": b""}}
 
 
 class TestDrawings:
@@ -109,6 +110,15 @@ class TestDrawings:
         assert base64.b64decode(source, validate=True) == HOSTILE
         assert "alert" not in page
         assert "Drawing depth.svg" in page
+
+    def test_drawings_that_are_too_large_together(self, toys):
+        """The first two fit, the third is named: a report has its bound whatever plugins draw."""
+        plugin = Draws()
+        plugin.names = ("a", "b", "c")
+        plugin.drawn = b"<svg>" + b" " * 390_000
+        page = self.page(toys, plugin)
+        assert page.count("image/svg") == 2
+        assert "<strong>c.svg</strong> too large" in page
 
     def test_a_drawing_that_is_too_large_is_named(self, toys):
         plugin = Draws()

@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 __all__ = ["MOST_BYTES", "drawing", "drawings"]
 
 MOST_BYTES = 400_000
-"""How large a drawing may be; a larger one stays a file beside the report."""
+"""How large a drawing may be, and all of them together twice that; what is more stays a file of its own."""
 
 
 def drawings(result: Result) -> Mapping[str, bytes]:
-    """File name → bytes of each ``.svg`` that the writers of the outputs' kinds make."""
+    """File name → bytes of each ``.svg`` that writers of the outputs' kinds make; of too large ones none."""
     writers = result.graph.catalog.writers()
     made = {
         file: data
@@ -26,7 +26,13 @@ def drawings(result: Result) -> Mapping[str, bytes]:
         if (kind := result.kinds[name]) in writers
         for file, data in writers[kind](name, value).items()
     }
-    return {file: data for file, data in made.items() if file.endswith(".svg")}
+    found = {file: data for file, data in made.items() if file.endswith(".svg")}
+    room = 2 * MOST_BYTES
+    for file, data in found.items():
+        fits = len(data) <= min(MOST_BYTES, room)
+        found[file] = data if fits else b""
+        room -= len(found[file])
+    return found
 
 
 def drawing(file: str, data: bytes) -> Markup:
@@ -36,7 +42,7 @@ def drawing(file: str, data: bytes) -> Markup:
     fetches nothing, whatever it holds. The script lays the reference view beneath.
     """
     name = element("strong", file)
-    if len(data) > MOST_BYTES:
+    if not data:
         return element("figure", element("figcaption", name, " too large for the report: open the file"))
     source = "data:image/svg+xml;base64," + base64.b64encode(data).decode()
     picture = element("img", src=source, alt=f"Drawing {file}")
