@@ -75,6 +75,14 @@ class TestStopAfter:
         assert result.stops == [Stop("sweeps", 0, 2, "times")]
         assert "depth" in result
 
+    @pytest.mark.parametrize(("node", "calls"), [("before", 1), ("within", 7), ("after", 8), ("last", 10)])
+    def test_progress_counts_what_will_be_called(self, stage, node, calls):
+        """What remains is told of the part that runs, not of the whole graph."""
+        seen = []
+        stage.run(LINE, {"x": 2.0}, stop_after=node, observers=(seen.append,))
+        assert next(event.calls for event in seen if type(event).__name__ == "RunStarted") == calls
+        assert sum(type(event).__name__ == "NodeStarted" for event in seen) == calls
+
     def test_an_unknown_node_is_refused(self, stage):
         with pytest.raises(GraphError, match=r"VI219.*no node 'wihtin'(.|\n)*Write: within"):
             stage.run(LINE, {"x": 2.0}, stop_after="wihtin")

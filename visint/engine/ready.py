@@ -21,7 +21,7 @@ from visint.names import did_you_mean, listed
 from visint.schedule import Block, Repeat, Schedule, Step, compile_graph
 from visint.schedule.steps import Item
 
-__all__ = ["execute", "pools_for"]
+__all__ = ["execute", "pools_for", "up_to"]
 
 
 def execute(schedule: Schedule, state: State, values: Mapping[str, Any], stop_after: str | None = None) -> None:
@@ -45,7 +45,7 @@ def pools_for(block: Block) -> int:
 
 @lru_cache(maxsize=32)
 def _ready(schedule: Schedule, threaded: bool, stop_after: str | None) -> Run:
-    root = _up_to(schedule, stop_after) if stop_after else schedule.root
+    root = up_to(schedule, stop_after) if stop_after else schedule.root
     return _block(schedule, root, 0 if threaded else None)
 
 
@@ -84,8 +84,8 @@ def _sub_graph(node: Node) -> Invoke:
     return invoke
 
 
-def _up_to(schedule: Schedule, node: str) -> Block:
-    """The root block up to and with the item that holds ``node``."""
+def up_to(schedule: Schedule, node: str) -> Block:
+    """The root block up to and with the item that holds ``node``; GraphError VI219 if there is no such node."""
     root = schedule.root
     for i, item in enumerate(root.items):
         inner = [item] if isinstance(item, Step) else list(item.body.steps())

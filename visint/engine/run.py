@@ -14,7 +14,7 @@ from visint.engine.attribution import Attribution, Weights
 from visint.engine.inputs import accept, camera_of, size_of
 from visint.engine.one_thread import ONE_THREAD
 from visint.engine.options import Options
-from visint.engine.ready import execute, pools_for
+from visint.engine.ready import execute, pools_for, up_to
 from visint.engine.state import Halt, State, emitter
 from visint.engine.warm import accept_start
 from visint.events import Observer, RunFinished, RunStarted
@@ -74,7 +74,7 @@ def run(
     state.emit = emitter(_observers(graph, options, attribution), threaded=threaded)
     started = perf_counter()
     names = _names(schedule)
-    state.tell(RunStarted(graph.name, names, _calls(schedule, size)))
+    state.tell(RunStarted(graph.name, names, _calls(schedule, size, options.stop_after)))
     finished = False
     try:
         with ONE_THREAD, ExitStack() as stack:
@@ -105,7 +105,7 @@ def _names(schedule: Schedule) -> tuple[str, ...]:
 
 
 @lru_cache(maxsize=32)
-def _calls(schedule: Schedule, size: tuple[int, int] | None) -> int:
+def _calls(schedule: Schedule, size: tuple[int, int] | None, stop_after: str | None) -> int:
     """The most calls of ``run`` that the schedule can make: what progress is measured against."""
     from visint.fields.resampling import levels_down_to
 
@@ -122,7 +122,7 @@ def _calls(schedule: Schedule, size: tuple[int, int] | None) -> int:
                 total += levels * count(item.body)
         return total
 
-    return count(schedule.root)
+    return count(up_to(schedule, stop_after) if stop_after else schedule.root)
 
 
 def _result(
