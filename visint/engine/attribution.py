@@ -113,10 +113,11 @@ class Attribution:
 
     def _enter(self, entry: _Entry, before: MapSnapshot, after: _Moment, level: int) -> None:
         given = [(source, one) for source in entry.sources if (one := self._now(source, level)) is not None]
-        shares = self._told(entry, len(given), level)
-        if shares is None:
-            shares = _at_most_all([pull(before, after.snapshot, entry.field, one) for _, one in given])
-        counted = [(source.cue, share) for (source, _), share in zip(given, shares, strict=True) if source.own]
+        told = self._told(entry, len(given), level)
+        if told is None:
+            given = [(source, one) for source, one in given if source.own]
+            told = _at_most_all([pull(before, after.snapshot, entry.field, one) for _, one in given])
+        counted = [(source.cue, share) for (source, _), share in zip(given, told, strict=True) if source.own]
         if counted:
             weights = after.weights.setdefault(entry.field, {})
             left = 1 - np.add.reduce([share for _, share in counted])

@@ -32,10 +32,12 @@ def pull(before: MapSnapshot, after: MapSnapshot, field: str, evidence: Evidence
     was unknown and is known now. Where the two cannot be compared it is the rise of the map's confidence over
     what was left to rise. 0 where the cue abstains, and where the map agreed with it already.
     """
+    speaks = evidence.reliability > 0
+    if not speaks.any():
+        return np.zeros(speaks.shape, np.float32)
     old, new = _seen_as(before, field, evidence), _seen_as(after, field, evidence)
     if new is None:
         return _risen(before, after, field, evidence)
-    speaks = evidence.reliability > 0
     if old is None:
         return (speaks & known(new)).astype(np.float32)
     said = _said(evidence, old)
