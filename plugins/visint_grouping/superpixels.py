@@ -24,7 +24,8 @@ class SuperpixelsParams(Params):
         How much a region may vary inside before it is cut: its size in pixels times the steps, in grey levels
         of 255, that a region of that size may have. More gives larger regions, which cross depth edges.
     smallest
-        Pixels that a region has at least, full-size. More leaves fewer regions without enough to fit a plane to.
+        Pixels that a region has at least, full-size. More leaves fewer regions with too little to fit a plane
+        to.
     """
 
     breadth: float = Field(default=150.0, gt=0)

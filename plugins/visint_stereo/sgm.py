@@ -59,8 +59,8 @@ class SemiGlobalParams(Params):
 class SemiGlobalInputs(Ports):
     """A rectified pair; the camera gives the search range.
 
-    ``prior``: a surface to follow, such as ``grouping.guide`` gives. Its reliability says how strongly: 0 not at
-    all, 1 with up to 12 bits a pixel; along its slopes a step of up to 2 px costs nothing.
+    ``prior``: a surface to follow, such as ``grouping.guide`` gives. Its reliability says how strongly: 0 not
+    at all, 1 with up to 12 bits a pixel; along its slopes a step of up to 2 px costs nothing.
     """
 
     left: Image[Array, "H W"]
@@ -74,7 +74,8 @@ class SemiGlobalOutputs(Ports):
 
     ``consistent``: both views agree and the pixel is no speckle. ``occluded``: the left view alone sees it.
     Elsewhere the disparity is filled along the paths, with the low reliability that such values deserve.
-    ``right_disparity``: of the right view, where both agree; NaN elsewhere.
+    ``right_disparity``: of the right view, where the left pixel that it matches is consistent; NaN elsewhere.
+    The two need not agree: it is for tests of visibility, which had better see too much than too little.
     """
 
     disparity: DisparityEvidence

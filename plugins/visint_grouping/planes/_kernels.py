@@ -143,9 +143,9 @@ def fitted(disparity, votes, starts, order, settings, planes, support, share):
     Hypotheses through three voters (every fourth level), scored by sum w max(0, 1 - r²); then reweighted
     least squares by Tukey's weight at 1.5 px with a ridge on the slopes.
 
-    disparity, votes: float32 (H, W); settings: (hypotheses, steepest, reach, Tukey's width, ridge, about how many
-    voters a hypothesis is scored on); planes float64 (R, 3); support float32 (R,): summed votes; share: of votes
-    within reach.
+    disparity, votes: float32 (H, W); settings: (hypotheses, steepest, reach, Tukey's width, ridge, about how
+    many voters a hypothesis is scored on); planes float64 (R, 3); support float32 (R,): summed votes; share: of
+    votes within reach.
     """
     hypotheses, steepest, reach, width, ridge, most = settings
     voters = np.empty((4, order.size), np.float32)

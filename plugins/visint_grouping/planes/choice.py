@@ -35,7 +35,7 @@ class Limits(NamedTuple):
 
 
 class Chosen(NamedTuple):
-    """Of each region: ``planes`` float64 (R, 3), NaN where none is accepted; ``energy`` and ``share`` float32."""
+    """Of each region: ``planes`` float64 (R, 3), NaN where none is accepted; ``energy``, ``share`` float32."""
 
     planes: Array
     energy: Array

@@ -11,7 +11,7 @@ from visint.module import Context, Module, Params, Ports
 __all__ = ["Guide"]
 
 LEAST = 0.004
-"""Reliability where nothing is to be changed: too little to cost anything, enough to say how the surface runs."""
+"""Reliability where nothing is to be changed: it costs nothing, and says how the surface runs."""
 
 
 class GuideParams(Params):
@@ -20,8 +20,8 @@ class GuideParams(Params):
     Parameters
     ----------
     doubt
-        Doubt (1 - reliability) in the first matching from which a plane counts in full; below it counts less, in
-        proportion. Less overrides surer matches.
+        Doubt (1 - reliability) in the first matching from which a plane counts in full; below it counts less,
+        in proportion. Less overrides surer matches.
     filled
         How much the first matching counts for the second where it has doubts and no plane speaks. More keeps
         what was filled in.

@@ -12,7 +12,11 @@ __all__ = ["laid_out"]
 
 
 def laid_out(labels: Array, chosen: Chosen, ballot: Ballot) -> tuple[Array, Array]:
-    """(disparity, its sight uint8: 0 hides something seen or lies out of range, 1 outside, 2 hidden, 3 seen)."""
+    """(disparity, its sight).
+
+    Sight, uint8: 0 where the plane would hide something that the right view sees, or lies out of range;
+    1 outside the right image, 2 hidden from it, 3 seen.
+    """
     from visint_grouping.planes import _kernels
 
     value, sight = np.empty(labels.shape, np.float32), np.empty(labels.shape, np.uint8)

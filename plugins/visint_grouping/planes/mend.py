@@ -83,9 +83,9 @@ class Mend(Module[MendParams, MendInputs, MendOutputs]):
 def mend_signs(inputs: MendInputs, value: Array, taken: Array) -> Array:
     """float32 (9, H, W): signs of a right disparity.
 
-    How sure this matching and the earlier are; whether both views agree; how sure the plane is where it was taken
-    and where not; whether there is none; how far the result lies from the earlier matching, its square root, and
-    how far from the plane.
+    How sure this matching and the earlier are; whether both views agree; how sure the plane is where it was
+    taken and where not; whether there is none; how far the result lies from the earlier matching, the square
+    root of that, and the square root of how far it lies from the plane.
     """
     earlier = inputs.evidence if inputs.earlier is None else inputs.earlier
     planes = inputs.planes

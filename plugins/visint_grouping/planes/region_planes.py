@@ -48,8 +48,8 @@ class RegionPlanesInputs(Ports):
 
     ``evidence``: from any matcher. ``consistent``: where both views agree on it; there it votes, by the square
     of its reliability; where not given, wherever reliability is at least a half. ``right_disparity``: the right
-    view's, NaN where unknown: no plane may hide what that view sees. ``right``: the right view itself, which has
-    to look alike. ``regions``: labels from 1, 0 unknown; else ``grouping.superpixels`` are made.
+    view's, NaN where unknown: no plane may hide what that view sees. ``right``: the right view itself, which
+    has to look alike. ``regions``: labels from 1, 0 unknown; else ``grouping.superpixels`` are made.
     """
 
     left: Image[Array, "H W"]

@@ -28,8 +28,8 @@ def plane_signs(labels: Array, chosen: Chosen, ballot: Ballot, laid: tuple[Array
     """float32 (8, H, W): signs of a right plane.
 
     The region's energy and its share of near voters; how far the plane lies from a voter, and from what is
-    filled; how sure the given map is, apart for voters and holes; whether the right view cannot see the surface;
-    its steepness. ``own``: the reliability of the map the planes were fitted to.
+    filled; how sure the given map is, apart for voters and holes; whether the right view cannot see the
+    surface; its steepness. ``own``: the reliability of the map the planes were fitted to.
     """
     value, sight = laid
     voted = ballot.votes > 0

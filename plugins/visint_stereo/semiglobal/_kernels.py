@@ -108,7 +108,7 @@ def hamming(left, mirrored, first, base, neutral, cost):
 
 @njit(cache=True, nogil=True)
 def lean_on(cost, value, weight, first, base):
-    """Adds to ``cost`` uint8 (H, W, D) what a level costs for lying off a prior: 4 a px up to 12, by ``weight``.
+    """Adds to ``cost`` uint8 (H, W, D) what a level costs for lying off a prior: 4 a px up to 12, weighted.
 
     value, weight float32 (H, W); where weight is 0 nothing is added.
     """
@@ -150,8 +150,8 @@ def aggregate(cost, shape, base, lean, pad, brightness, small, steep, total, way
 
     Parameters: cost uint8 flat; base int32 (H, W) as in :func:`hamming` (neighbours' levels are shifted to
     stand for the same disparity, by at most ``pad``: D if base varies, 0 if it is 0); lean int32 (H, W): whole
-    levels of a surface that is followed without a penalty where it steps by at most 2 (SGM-P: Scharstein, Taniai
-    and Sinha 2017, doi:10.1109/3DV.2017.00034), which wants a ``pad`` of 2; brightness uint8 (H, W);
+    levels of a surface that is followed without a penalty where it steps by at most 2 (SGM-P: Scharstein,
+    Taniai and Sinha 2017, doi:10.1109/3DV.2017.00034), which wants a ``pad`` of 2; brightness uint8 (H, W);
     ``small`` P1; ``steep`` uint8 (256,) P2 by brightness step; total uint16 flat, added to.
     """
     rows, columns, wide = shape

@@ -18,8 +18,8 @@ from visint_stereo.semiglobal.volume import (
     Penalties,
     Prior,
     Volume,
-    lean_on,
     census,
+    lean_on,
     matching_costs,
     path_costs,
 )
@@ -47,7 +47,7 @@ class Settings:
 class Match:
     """Of the left view, (H, W) each: ``disparity`` and ``sigma`` in px and ``trust`` in [0, 1], float32;
     ``consistent`` (both views agree) and ``hidden`` (from the right view), bool. Of the right view: ``right``,
-    float32, px, its disparity where both agree, else NaN.
+    float32, px, its disparity where the left pixel that it matches is consistent, else NaN.
     """
 
     disparity: Array

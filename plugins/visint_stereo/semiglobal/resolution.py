@@ -45,7 +45,7 @@ def matched_within(  # noqa: PLR0913 - a match, and how much of it at once
     smaller = prior and prior.halved()
     coarse = matched_within(block_mean(left), block_mean(right), half, small, check, cells, prior=smaller)
     band = _band(nearest_up(2 * coarse.disparity, left.shape), levels)
-    strips = [_strip(left, right, band, rows, settings, check, prior) for rows in _strips(left.shape)]
+    strips = [_strip((left, right), band, rows, settings, check, prior) for rows in _strips(left.shape)]
     joined = {f.name: np.concatenate([getattr(strip, f.name) for strip in strips]) for f in fields(Match)}
     return Match(**joined)
 
@@ -66,15 +66,15 @@ def _strips(shape: tuple[int, int]) -> Iterator[tuple[int, int]]:
     return zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True)
 
 
-def _strip(  # noqa: PLR0913 - as above
-    left: Array,
-    right: Array,
+def _strip(
+    views: tuple[Array, Array],
     band: Levels,
     rows: tuple[int, int],
     settings: Settings,
     check: Check,
     prior: Prior | None,
 ) -> Match:
+    left, right = views
     above, below = min(OVERLAP, rows[0]), min(OVERLAP, left.shape[0] - rows[1])
     part = slice(rows[0] - above, rows[1] + below)
     levels = replace(band, base=np.ascontiguousarray(band.lowest(left.shape)[part]))

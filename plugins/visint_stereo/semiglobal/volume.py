@@ -73,8 +73,8 @@ class Penalties:
 class Prior:
     """A surface to follow: ``value`` float32 (H, W), px; ``weight`` float32 (H, W) in [0, 1].
 
-    Where it is known (``there``, bool) paths climb with it at no cost; its weight times 4 bits a px, at most 12,
-    is what a level costs that lies off it.
+    Where it is known (``there``, bool) paths climb with it at no cost; its weight times 4 bits a px, at most
+    12, is what a level costs that lies off it.
     """
 
     value: Array
@@ -97,7 +97,7 @@ class Prior:
         return Prior.of(block_mean(value) / 2, block_mean(self.weight))
 
     def lean(self) -> Array:
-        """int32 (H, W): whole levels of the surface; far off where there is none, so that nothing follows it."""
+        """int32 (H, W): whole levels of the surface; far off where there is none: nothing follows it there."""
         lost = np.int32(-(1 << 20))
         return np.where(self.there, np.rint(self.value).astype(np.int32), lost)
 

@@ -128,7 +128,7 @@ def test_energy_and_share_are_knobs():
 
 
 def test_nothing_known_says_nothing():
-    regions, image = halves()
+    image = halves()[1]
     none = DisparityEvidence.of(np.full(SHAPE, np.nan, np.float32), 1.0, 0.0)
     found = RegionPlanes().run(RegionPlanesInputs(left=image, evidence=none), HERE)
     assert not found.disparity.reliability.any()
@@ -177,7 +177,8 @@ def test_the_graph_runs_with_and_without_colour(color):
     left, right = wide[:, :-12].copy(), wide[:, 12:].copy()
     given = {"color": np.repeat(left[..., None], 3, axis=2)} if color else {}
     camera = visint.Camera.uncalibrated(108, 64, (0, 24))
-    results = [visint.run(name, left=left, right=right, camera=camera) for name in ("stereo_sgm", "stereo_planes")]
-    off = [np.nanmean(np.abs(result["disparity"] - 12)) for result in results]
+    alone = visint.run("stereo_sgm", left=left, right=right, camera=camera)
+    whole = visint.run("stereo_planes", left=left, right=right, camera=camera, **given)
+    off = [np.nanmean(np.abs(result["disparity"] - 12)) for result in (alone, whole)]
     assert off[1] <= off[0] + 0.01
     assert off[1] < 0.5

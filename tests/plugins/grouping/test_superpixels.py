@@ -17,7 +17,9 @@ def regions_of(image, color=None, scale=1, **params):
 
 def squares(levels, side=30):
     """One row of even squares."""
-    return np.repeat(np.tile(np.repeat(np.asarray(levels), side), (side, 1))[None], 1, axis=0)[0].astype(np.float32)
+    return np.repeat(np.tile(np.repeat(np.asarray(levels), side), (side, 1))[None], 1, axis=0)[0].astype(
+        np.float32
+    )
 
 
 def test_even_squares_are_regions():
