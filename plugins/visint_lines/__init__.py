@@ -15,8 +15,10 @@ def visint_modules() -> list[Any]:
     from visint_lines.label import Label
     from visint_lines.measure import Features
     from visint_lines.parse import Parse
+    from visint_lines.superquadric.module import SuperquadricFit
+    from visint_lines.trace import Trace
 
-    return [Features, Label, Parse]
+    return [Features, Label, Parse, SuperquadricFit, Trace]
 
 
 @hookimpl
@@ -31,9 +33,10 @@ def visint_fields() -> list[Any]:
 def visint_writers() -> dict[str, Any]:
     """``labels.json`` and ``labels.svg`` of an output named ``labels``."""
     from visint_lines.drawing import svg
-    from visint_lines.record import diagram_record, labels_record
+    from visint_lines.record import diagram_record, fits_record, labels_record
 
     return {
+        "lines.Superquadrics": lambda name, value: {f"{name}.json": fits_record(value)},
         "lines.Diagram": lambda name, value: {f"{name}.json": diagram_record(value)},
         "lines.Labels": lambda name, value: {f"{name}.json": labels_record(value), f"{name}.svg": svg(value)},
     }

@@ -259,3 +259,70 @@ def thinned(lines):
                         image[r, c] = 0
                         gone[r, c] = 0
     return image[1:-1, 1:-1] > 0
+
+
+@njit(cache=True, nogil=True)
+def _links(lines, r, c, out):
+    """Fills ``out`` (8, 2) with the neighbours of a skeleton pixel; a diagonal one only if no corner joins both."""
+    height, width = lines.shape
+    n = 0
+    for dr, dc in ((0, 1), (-1, 0), (0, -1), (1, 0), (-1, 1), (-1, -1), (1, -1), (1, 1)):
+        y, x = r + dr, c + dc
+        if y < 0 or x < 0 or y >= height or x >= width or not lines[y, x]:
+            continue
+        if dr != 0 and dc != 0 and (lines[r, x] or lines[y, c]):
+            continue
+        out[n, 0], out[n, 1] = y, x
+        n += 1
+    return n
+
+
+@njit(cache=True, nogil=True)
+def walks(lines):
+    """(points (N, 2) row and column, first (A + 1), closed (A)) of a skeleton's chains between ends and branches."""
+    height, width = lines.shape
+    near, ahead = np.empty((8, 2), np.int64), np.empty((8, 2), np.int64)
+    degree = np.zeros((height, width), np.int64)
+    total = 0
+    for r in range(height):
+        for c in range(width):
+            if lines[r, c]:
+                degree[r, c] = _links(lines, r, c, near)
+                total += degree[r, c] + 1
+    points = np.empty((2 * total + 2, 2), np.int64)
+    first = np.zeros(total + 2, np.int64)
+    closed = np.zeros(total + 1, np.bool_)
+    done = np.zeros((height, width), np.bool_)
+    count, at = 0, 0
+    for sweep in range(2):
+        for r in range(height):
+            for c in range(width):
+                if not lines[r, c] or degree[r, c] == 0:
+                    continue
+                if (sweep == 0) == (degree[r, c] == 2) or (sweep == 1 and done[r, c]):
+                    continue
+                n = _links(lines, r, c, near)
+                for k in range(1 if sweep == 1 else n):
+                    y, x = near[k, 0], near[k, 1]
+                    if degree[y, x] == 2 and done[y, x]:
+                        continue
+                    if degree[y, x] != 2 and (y < r or (y == r and x < c)):
+                        continue  # two branches side by side: walked from the first of them
+                    points[at, 0], points[at, 1] = r, c
+                    at += 1
+                    before_r, before_c = r, c
+                    while degree[y, x] == 2 and not (y == r and x == c):
+                        done[y, x] = True
+                        points[at, 0], points[at, 1] = y, x
+                        at += 1
+                        _links(lines, y, x, ahead)
+                        i = 1 if ahead[0, 0] == before_r and ahead[0, 1] == before_c else 0
+                        before_r, before_c = y, x
+                        y, x = ahead[i, 0], ahead[i, 1]
+                    points[at, 0], points[at, 1] = y, x
+                    at += 1
+                    done[r, c] = True
+                    closed[count] = sweep == 1
+                    count += 1
+                    first[count] = at
+    return points[:at], first[: count + 1], closed[:count]

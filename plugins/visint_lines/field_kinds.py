@@ -23,4 +23,8 @@ def _size(value: Any) -> tuple[int, int]:
     return size
 
 
-KINDS = (FieldKind("lines.Diagram", None, _down, _up), FieldKind("lines.Labels", None, _down, _up))
+KINDS = (
+    FieldKind("lines.Diagram", None, _down, _up),
+    FieldKind("lines.Labels", None, _down, _up),
+    FieldKind("lines.Superquadrics"),
+)

@@ -12,6 +12,10 @@ __all__ = ["LEAST", "limb_points", "limb_runs"]
 
 LEAST = 6
 """Samples below which nothing is said."""
+FEWEST = 5
+"""Of them those before the surface has turned to face the viewer; fewer are no limb's."""
+FACING = 0.0
+"""The angle below which it has: what lies beyond is about another side of the surface."""
 FIRST = 3
 """Samples next to the boundary whose mean is the starting angle."""
 DROP = np.radians(3.0)
@@ -20,13 +24,13 @@ BENT = 0.7
 """Part of the least starting angle that the samples themselves must have."""
 GRAIN = np.radians(1.0)
 """Angles are rounded to this before they are ranked: ranks of rounding errors are noise."""
-HIT, FALSE = 0.9, 0.04
+HIT, FALSE = 0.85, 0.04
 """Share of the points of a limb, and of other lines, that pass both tests."""
 CHANGE = 10.0
 """What it costs, in nats, that a line changes between limb and none: about five points' worth."""
 
 
-def limb_points(slant: Array, size: float, start: float) -> tuple[Array, Array]:
+def limb_points(slant: Array, offset: Array, size: float, start: float) -> tuple[Array, Array]:
     """(passed, asked), bool (...): whether angles (..., M), by distance from the boundary, pass both tests of
     section 4.1.3, and whether there were :data:`LEAST` of them, so that anything could be said.
 
@@ -37,6 +41,8 @@ def limb_points(slant: Array, size: float, start: float) -> tuple[Array, Array]:
     has turned to the viewer after few pixels. Ties have mean ranks; NaN is no sample.
     """
     known = np.isfinite(slant)
+    asked = known.sum(axis=-1) >= LEAST
+    known &= np.cumsum(known & (slant < FACING), axis=-1) == 0
     count = known.sum(axis=-1)
     angle = np.where(known, np.rint(slant / GRAIN), 0)
     distance = np.broadcast_to(np.arange(slant.shape[-1], dtype=np.float64), slant.shape)
@@ -44,26 +50,32 @@ def limb_points(slant: Array, size: float, start: float) -> tuple[Array, Array]:
     rank = known.cumsum(axis=-1)
     begin = _mean(slant, known & (rank <= FIRST))
     end = _mean(slant, known & (rank > count[..., None] - FIRST))
-    begins = np.maximum(begin, np.where(begin > BENT * start, _at_boundary(slant, known), 0))
+    begins = np.maximum(
+        begin, np.where(begin > _bent(known, offset) * start, _at_boundary(slant, known, offset), 0)
+    )
     critical = np.array([_critical(m, size) for m in range(slant.shape[-1] + 1)])
-    asked = count >= LEAST
-    return (trend < critical[count]) & (begin - end > DROP) & (begins > start) & asked, asked
+    return (trend < critical[count]) & (begin - end > DROP) & (begins > start) & (count >= FEWEST), asked
 
 
 def _mean(value: Array, where: Array) -> Array:
     return np.asarray(np.where(where, value, 0).sum(axis=-1) / np.maximum(where.sum(axis=-1), 1))
 
 
-def _at_boundary(slant: Array, known: Array) -> Array:
-    """The angle at the boundary itself of a surface as round as the samples: there cos² is linear in distance."""
-    near = known & (known.cumsum(axis=-1) <= 2 * FIRST)
-    weight, away = near.astype(np.float64), np.arange(1.0, slant.shape[-1] + 1)
-    squared = np.where(near, np.cos(slant) ** 2, 0)
+def _bent(known: Array, offset: Array) -> Array:
+    """Part of the least starting angle that the first samples must have: less where they lie further in."""
+    first = np.where(known, offset, np.inf).min(axis=-1, initial=np.inf)
+    return np.asarray(BENT / np.maximum(first, 1) ** 0.6)
+
+
+def _at_boundary(slant: Array, known: Array, offset: Array) -> Array:
+    """The angle at the boundary itself, by the samples' trend: on a round surface its sine is linear in distance."""
+    weight = known.astype(np.float64)
+    sine = np.where(known, np.sin(slant), 0)
     total = np.maximum(weight.sum(axis=-1), 1)
-    mean_x, mean_y = (weight * away).sum(axis=-1) / total, squared.sum(axis=-1) / total
-    off = (away - mean_x[..., None]) * weight
-    slope = (off * squared).sum(axis=-1) / np.maximum((off**2).sum(axis=-1), 1e-9)
-    return np.asarray(np.arccos(np.sqrt(np.clip(mean_y - slope * mean_x, 0, 1))))
+    mean_x, mean_y = (weight * offset).sum(axis=-1) / total, sine.sum(axis=-1) / total
+    away = (offset - mean_x[..., None]) * weight
+    slope = (away * sine).sum(axis=-1) / np.maximum((away**2).sum(axis=-1), 1e-9)
+    return np.asarray(np.arcsin(np.clip(mean_y - slope * mean_x, -1, 1)))
 
 
 def _ranks(value: Array, known: Array) -> Array:
@@ -87,23 +99,24 @@ def _critical(count: int, size: float) -> float:
     """The S whose R is the ``size`` quantile of t with ``count`` − 2 degrees of freedom."""
     from scipy.special import stdtrit
 
-    if count < LEAST:
+    if count < FEWEST:
         return -2.0
     t = float(stdtrit(count - 2, size))
     return t / (count - 2 + t * t) ** 0.5
 
 
-def limb_runs(passed: Array, asked: Array, closed: bool) -> list[tuple[int, int, bool]]:
+def limb_runs(passed: Array, asked: Array, closed: bool, blur: float = 0.0) -> list[tuple[int, int, bool]]:
     """(first, behind the last, whether limb) of the runs into which points fall, bool (N,), along a line.
 
-    Points that were not asked go with their neighbours. The cheapest explanation by limb and other stretches, each change having its price. On a closed line the
+    In blurred depth a change has a higher price. Points that were not asked go with their neighbours. The cheapest explanation by limb and other stretches, each change having its price. On a closed line the
     first run may begin anywhere; then its last index lies beyond N.
     """
     count = len(passed)
     if count == 0:
         return []
     cost = -np.log(np.where(passed[:, None], [FALSE, HIT], [1 - FALSE, 1 - HIT])) * asked[:, None]
-    states = _cheapest(np.tile(cost, (3, 1)))[count : 2 * count] if closed else _cheapest(cost)
+    change = CHANGE * (1 + blur / 4)
+    states = _cheapest(np.tile(cost, (3, 1)), change)[count : 2 * count] if closed else _cheapest(cost, change)
     cuts = np.flatnonzero(np.diff(states.astype(np.int8))) + 1
     if not closed or not len(cuts):
         edges = [0, *cuts.tolist(), count]
@@ -115,11 +128,11 @@ def limb_runs(passed: Array, asked: Array, closed: bool) -> list[tuple[int, int,
     return [(a, b, bool(states[a % count])) for a, b in zip(edges, edges[1:], strict=False)]
 
 
-def _cheapest(cost: Array) -> Array:
+def _cheapest(cost: Array, change: float) -> Array:
     """bool (N,): the states with the least sum of cost (N, 2) and changes (Viterbi)."""
     total, back = cost[0].copy(), np.zeros((len(cost), 2), np.int64)
     for i in range(1, len(cost)):
-        switched = total[::-1] + CHANGE
+        switched = total[::-1] + change
         back[i] = np.where(switched < total, [1, 0], [0, 1])
         total = np.minimum(total, switched) + cost[i]
     states = np.empty(len(cost), bool)

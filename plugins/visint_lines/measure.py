@@ -20,6 +20,8 @@ from visint_lines.splitting import split
 
 __all__ = ["Features", "FeaturesParams"]
 
+UNTOLD = 0.3
+"""Limbness of a side too narrow to tell."""
 OFF = 0.6
 """Pixels by which a line lies off its place: on a steep face that makes a gap."""
 
@@ -32,6 +34,10 @@ class FeaturesParams(Params):
     across
         Pixels of the level to either side of a line within which depth is extrapolated to it. More averages more
         noise out and believes longer that faces are parabolas.
+    blur
+        Full-size pixels to either side of a line within which depth is not to be believed, because it was
+        smoothed across, or matched where one view sees nothing. 0 suits range images, 6 stereo. More sees less of
+        small faces.
     window
         Pixels of the level to each side of the square in which a plane is fitted for a normal.
     samples
@@ -43,6 +49,7 @@ class FeaturesParams(Params):
     """
 
     across: int = Field(default=8, ge=3, le=64)
+    blur: float = Field(default=0.0, ge=0, le=64)
     window: int = Field(default=2, ge=1, le=16)
     samples: int = Field(default=10, ge=6, le=64)
     size: float = Field(default=0.01, gt=0, lt=0.5)
@@ -89,10 +96,11 @@ class Features(Module[FeaturesParams, FeaturesInputs, FeaturesOutputs]):
         camera = inputs.camera or Camera.uncalibrated(inputs.regions.shape[1], inputs.regions.shape[0])
         seen = surfaces(inputs.depth, inputs.regions, camera, p.window)
         ctx.check()
-        sections = cut(inputs.diagram, seen, max(p.across, p.samples))
+        blur = p.blur / ctx.scale
+        sections = cut(inputs.diagram, seen, _offsets(max(p.across, p.samples), blur))
         ctx.check()
-        found = _observed(sections, p)
-        diagram, owner = split(inputs.diagram, sections.arc, sections.index, found.passed, found.asked)
+        found = _observed(sections, p, blur)
+        diagram, owner = split(inputs.diagram, sections.arc, sections.index, found.passed, found.asked, blur)
         diagram = replace(
             diagram,
             arcs=tuple(
@@ -103,6 +111,12 @@ class Features(Module[FeaturesParams, FeaturesInputs, FeaturesOutputs]):
         return FeaturesOutputs(diagram=diagram, limbness=_painted(diagram))
 
 
+def _offsets(count: int, blur: float) -> Array:
+    """Distances of the samples: every pixel; beyond the blur in steps that keep up with it."""
+    near = np.arange(1, int(blur) + 1)
+    return np.concatenate([near, blur + np.arange(1, count + 1) * (1 + blur / 12)])
+
+
 class _Observed(NamedTuple):
     """Section by section: the profile; whether either side (N, 2) is a limb's and can tell; whether any."""
 
@@ -111,15 +125,18 @@ class _Observed(NamedTuple):
     told: Array
     passed: Array
     asked: Array
+    off: float
 
 
-def _observed(sections: Sections, p: FeaturesParams) -> _Observed:
-    limb, asked = limb_points(sections.slant[:, :, : p.samples], p.size, p.start)
-    told = profile(sections.depth[:, :, : p.across], sections.offset[: p.across])
+def _observed(sections: Sections, p: FeaturesParams, blur: float) -> _Observed:
+    near = int(blur)
+    limb, asked = limb_points(sections.of(p.samples, near).slant, sections.offset, p.size, p.start)
+    faces = sections.of(p.across, near)
+    told = profile(faces.depth, sections.offset, faces.there)
     behind = np.stack([told.gap < 0, told.gap > 0], axis=-1) & told.seen[:, None]
     limb &= ~behind  # a limb hides what is behind it
-    near = np.where(told.seen, asked[np.arange(len(asked)), (told.gap < 0).astype(int)], asked.any(axis=1))
-    return _Observed(told, limb, asked, limb.any(axis=1), near)
+    nearer = np.where(told.seen, asked[np.arange(len(asked)), (told.gap < 0).astype(int)], asked.any(axis=1))
+    return _Observed(told, limb, asked, limb.any(axis=1), nearer, OFF * (1 + blur / 4))
 
 
 def _summed(found: _Observed, mine: Array) -> Measures:
@@ -128,21 +145,19 @@ def _summed(found: _Observed, mine: Array) -> Measures:
     if count == 0:
         return Measures()
     left, right = (
-        float(passed / max(asked, 1))
+        float(passed / asked) if asked else UNTOLD
         for passed, asked in zip(found.limb[mine].sum(axis=0), found.told[mine].sum(axis=0), strict=True)
     )
     both = mine & told.seen
     seen = float(both.sum() / count)
     if both.sum() >= max(2, 0.3 * count):
         gap, spread = _middle(told.gap[both])
-        spread = float(np.hypot(spread, OFF * np.median(told.steepness[both])))
+        spread = float(np.hypot(spread, found.off * np.median(told.steepness[both])))
         bend, spread_bend = _middle(told.dihedral[both])
         return Measures(gap, spread, bend, spread_bend, left, right, seen)
-    one = mine & (told.alone != 0)
-    if one.sum() >= 0.5 * count:  # behind it nothing is known
-        return Measures(
-            float(np.sign(np.median(told.alone[one]))) * np.inf, 1.0, 0.0, np.inf, left, right, seen
-        )
+    one = told.alone[mine]
+    if np.count_nonzero(one) >= 0.5 * count and one.sum():  # behind it nothing is known
+        return Measures(float(np.sign(one.sum())) * np.inf, 1.0, 0.0, np.inf, left, right, seen)
     return Measures(left=left, right=right, seen=seen)
 
 

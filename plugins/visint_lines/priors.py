@@ -76,13 +76,14 @@ def _from_depth(m: Measures, at: Thresholds) -> Array:
     jump = sigmoid(abs(gap), at.slope_gap, at.gap + m.spread, m.spread) if m.spread < inf else 0.5
     left = sigmoid(gap, at.slope_gap, 0.0, m.spread)
     angle, spread = degrees(m.dihedral), degrees(m.spread_dihedral) if m.spread_dihedral < inf else inf
+    limb_left, limb_right = (sigmoid(side, 12.0, 0.35) for side in (m.left, m.right))
     said = {
         "+": sigmoid(angle, at.slope_dihedral, at.dihedral, spread) * (1 - jump),
         "-": sigmoid(-angle, at.slope_dihedral, at.dihedral, spread) * (1 - jump),
-        ">": jump * (1 - left) * (1 - m.right),
-        "<": jump * left * (1 - m.left),
-        ">>": jump * (1 - left) * m.right,
-        "<<": jump * left * m.left,
+        ">": jump * (1 - left) * (1 - limb_right),
+        "<": jump * left * (1 - limb_left),
+        ">>": jump * (1 - left) * limb_right,
+        "<<": jump * left * limb_left,
     }
     occludes, limb = said[">"] + said["<"], said[">>"] + said["<<"]
     said["x"] = 1 - max(said["+"], said["-"], occludes, limb)

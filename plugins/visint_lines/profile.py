@@ -33,7 +33,7 @@ class Profile(NamedTuple):
     alone: Array
 
 
-def profile(depth: Array, offset: Array) -> Profile:
+def profile(depth: Array, offset: Array, there: Array) -> Profile:
     """Fits ζ = a + b s + c s² to either side of each section, with its own a and b and one c for both.
 
     Parameters
@@ -42,15 +42,17 @@ def profile(depth: Array, offset: Array) -> Profile:
         float (N, 2, M), pixels, left then right; NaN is unknown.
     offset
         float (M,): distances from the arc, pixels.
+    there
+        bool (N, 2, M): the sample lies in its side's region, whether or not depth is known.
     """
     known = np.isfinite(depth)
     enough = known.sum(axis=2) >= LEAST
     seen = enough.all(axis=1)
-    alone = np.where(enough[:, 0] & ~known[:, 1].any(axis=1), 1, 0)
-    alone -= enough[:, 1] & ~known[:, 0].any(axis=1)
+    blank = (there.sum(axis=2) >= LEAST) & ~known.any(axis=2)
+    alone = (enough[:, 0] & blank[:, 1]).astype(np.int64) - (enough[:, 1] & blank[:, 0])
     terms = _terms(offset)
-    weight = (known & seen[:, None, None]).reshape(len(depth), -1).astype(np.float64)
-    value = np.where(known, depth, 0.0).reshape(len(depth), -1)
+    weight = (known & seen[:, None, None]).reshape(len(depth), len(terms)).astype(np.float64)
+    value = np.where(known, depth, 0.0).reshape(len(depth), len(terms))
     normal = np.einsum("nk,ki,kj->nij", weight, terms, terms) + np.diag([1e-9, 1e-9, 1e-9, 1e-9, STIFF])
     right = np.einsum("nk,ki->ni", weight * value, terms)
     a_left, b_left, a_right, b_right, _ = np.linalg.solve(normal, right[..., None])[..., 0].T

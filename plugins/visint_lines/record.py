@@ -10,7 +10,7 @@ from visint_lines.catalogue import KINDS, LABELS
 from visint_lines.diagram import Arc, Diagram, Measures
 from visint_lines.labels import ArcLabel, Labels
 
-__all__ = ["diagram_record", "labels_record"]
+__all__ = ["diagram_record", "fits_record", "labels_record"]
 
 ABOUT = {
     "coordinates": "x (column) and y (row) in pixels of the image, pixel centres at integers",
@@ -28,6 +28,19 @@ def diagram_record(diagram: Diagram) -> bytes:
 def labels_record(labels: Labels) -> bytes:
     """The diagram with every arc's label and every junction's type, their probabilities and their geometry."""
     return _json(_told(labels.diagram, labels))
+
+
+def fits_record(fits: Any) -> bytes:
+    """Superquadrics by region: half-axes, roundness, rotation vector, centre, rms distance."""
+    told = [
+        {
+            "region": label,
+            **{k: [_number(v) for v in vs] for k, vs in fit.shape._asdict().items()},
+            "rms": fit.rms,
+        }
+        for label, fit in fits.of
+    ]
+    return _json({"superquadrics": told})
 
 
 def _told(diagram: Diagram, labels: Labels | None) -> dict[str, Any]:

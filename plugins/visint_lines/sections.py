@@ -14,6 +14,8 @@ __all__ = ["Sections", "Surfaces", "cut", "surfaces"]
 
 STRIDE = 2
 """Points along an arc from one section to the next."""
+FEW = 4
+"""Samples of a face beyond the blur below which those within have to do."""
 MARGIN = 3
 """Points at each end of an arc where no section is made: other arcs are too near."""
 
@@ -42,6 +44,8 @@ class Sections(NamedTuple):
         float (M,): distances from the arc, pixels.
     depth
         float (N, 2, M): relative depth in pixels, f (1 − w/w₀): linear across a plane. NaN is unknown.
+    there
+        bool (N, 2, M): the sample lies in the side's region, whether or not depth is known there.
     slant
         float (N, 2, M): angle by which the surface turns away from the viewer towards the arc, radians.
     """
@@ -52,6 +56,16 @@ class Sections(NamedTuple):
     offset: Array
     depth: Array
     slant: Array
+    there: Array
+
+    def of(self, first: int, near: int) -> Sections:
+        """The first samples beyond the ``near`` ones of each section; where those are too few, all it has."""
+        there = self.there[:, :, near:]
+        wide = there.sum(axis=2, keepdims=True) >= FEW
+        keep = np.concatenate([np.broadcast_to(~wide, (*there.shape[:2], near)), np.ones_like(there)], axis=2)
+        keep &= keep.cumsum(axis=2) <= np.where(wide, first, near + first)
+        blank = np.where(keep, 0.0, np.nan)
+        return self._replace(depth=self.depth + blank, slant=self.slant + blank, there=self.there & keep)
 
 
 def surfaces(depth: Array, labels: Array, camera: Camera, radius: int) -> Surfaces:
@@ -64,22 +78,20 @@ def surfaces(depth: Array, labels: Array, camera: Camera, radius: int) -> Surfac
     return Surfaces(_kernels.planes_within(nearness, labels, radius), labels, camera)
 
 
-def cut(diagram: Diagram, seen: Surfaces, reach: int) -> Sections:
-    """Sections of every arc, ``reach`` pixels to either side."""
+def cut(diagram: Diagram, seen: Surfaces, offset: Array) -> Sections:
+    """Sections of every arc, with samples ``offset`` pixels (M,) away from it on either side."""
     places, across, arc, index = _stations(diagram)
-    offset = np.arange(1, reach + 1, dtype=np.float64)
     signed = np.stack([-offset, offset])  # (2, M)
     spots = places[:, None, None] + signed[None, :, :, None] * across[:, None, None]
     sides = np.array([(a.left, a.right) for a in diagram.arcs], dtype=np.int64).reshape(-1, 2)[arc]
-    nearness, slopes, rays = _read(spots, sides, seen)
+    nearness, slopes, rays, there = _read(spots, sides, seen)
     sight = np.broadcast_to((places - np.array([seen.camera.cx, seen.camera.cy]))[:, None, None], rays.shape)
     middle = np.nanmax(np.where(np.isfinite(nearness), nearness, -np.inf), axis=(1, 2), initial=-np.inf)
     scale = np.where(np.isfinite(middle) & (middle > 0), middle, np.nan)[:, None, None]
     depth = seen.camera.focal_length * (1 - nearness / scale)
     outward = np.stack([across, -across], axis=1)[:, :, None]
-    return Sections(
-        arc, index, across, offset, depth, _slant(nearness, slopes, (rays, sight), outward, seen.camera)
-    )
+    slant = _slant(nearness, slopes, (rays, sight), outward, seen.camera)
+    return Sections(arc, index, across, offset, depth, slant, there)
 
 
 def _stations(diagram: Diagram) -> tuple[Array, Array, Array, Array]:
@@ -100,8 +112,8 @@ def _stations(diagram: Diagram) -> tuple[Array, Array, Array, Array]:
     return places, across, arc_of, index_of
 
 
-def _read(spots: Array, sides: Array, seen: Surfaces) -> tuple[Array, Array, Array]:
-    """(nearness, its slopes, (u, v) from the principal point) at ``spots`` (N, 2, M, 2), NaN off the side."""
+def _read(spots: Array, sides: Array, seen: Surfaces) -> tuple[Array, Array, Array, Array]:
+    """(nearness, its slopes, (u, v) from the principal point, whether on the side) at ``spots`` (N, 2, M, 2), NaN off the side."""
     height, width = seen.labels.shape
     nearest = np.rint(spots).astype(np.int64)
     inside = ((nearest >= 0) & (nearest < np.array([width, height]))).all(axis=-1)
@@ -112,7 +124,7 @@ def _read(spots: Array, sides: Array, seen: Surfaces) -> tuple[Array, Array, Arr
     nearness = planes[..., 0] + (planes[..., 1:] * off).sum(axis=-1)
     nearness = np.where(nearness > 0, nearness, np.nan)
     centre = np.array([seen.camera.cx, seen.camera.cy])
-    return nearness, planes[..., 1:], spots - centre
+    return nearness, planes[..., 1:], spots - centre, own
 
 
 def _slant(nearness: Array, slopes: Array, rays: tuple[Array, Array], outward: Array, camera: Camera) -> Array:

@@ -17,7 +17,9 @@ SHORTEST = 12
 """Points that a piece between two cuts has at least."""
 
 
-def split(diagram: Diagram, arc_of: Array, index: Array, passed: Array, asked: Array) -> tuple[Diagram, Array]:
+def split(
+    diagram: Diagram, arc_of: Array, index: Array, passed: Array, asked: Array, blur: float
+) -> tuple[Diagram, Array]:
     """The diagram with its arcs cut between limb and no limb, and the new arc of each section.
 
     Parameters
@@ -26,6 +28,8 @@ def split(diagram: Diagram, arc_of: Array, index: Array, passed: Array, asked: A
         int (N,): arc of each section, and the point it goes through.
     passed, asked
         bool (N,): whether the section is a limb's, and whether it can tell.
+    blur
+        Pixels by which depth is blurred: neighbouring sections then err together.
     """
     spots = [(j.x, j.y) for j in diagram.junctions]
     frame = [j.frame for j in diagram.junctions]
@@ -33,7 +37,7 @@ def split(diagram: Diagram, arc_of: Array, index: Array, passed: Array, asked: A
     owner = np.empty(len(arc_of), dtype=np.int64)
     for number, arc in enumerate(diagram.arcs):
         mine = np.flatnonzero(arc_of == number)
-        cuts = _cuts(arc, index[mine], limb_runs(passed[mine], asked[mine], arc.closed))
+        cuts = _cuts(arc, index[mine], limb_runs(passed[mine], asked[mine], arc.closed, blur))
         owner[mine] = len(arcs) + _piece_of(index[mine], cuts, arc.closed)
         arcs += _between(arc, cuts, len(spots))
         spots += [(float(x), float(y)) for x, y in arc.points[cuts]]

@@ -117,9 +117,8 @@ def test_as_published(name):
 def _essence(record):
     """What does not hang on the last digit."""
     return {
-        "junctions": [(j["type"], j["legal"], [a["arc"] for a in j["arcs"]]) for j in record["junctions"]] and [
-            [j["type"], j["legal"], [a["arc"] for a in j["arcs"]]] for j in record["junctions"]
-        ],
+        "junctions": [(j["type"], j["legal"], [a["arc"] for a in j["arcs"]]) for j in record["junctions"]]
+        and [[j["type"], j["legal"], [a["arc"] for a in j["arcs"]]] for j in record["junctions"]],
         "arcs": [[arc["start"], arc["end"], arc["label"]] for arc in record["arcs"]],
     }
 
