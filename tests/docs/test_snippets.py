@@ -19,7 +19,10 @@ from visint_lab.render.rendering import render
 from visint_lab.scenes.demonstration import sphere_before_plane
 
 ROOT = Path(__file__).parents[2]
-OWN_TESTS = {"write-a-module.md"}  # tests/thirdparty installs what it builds
+OWN_TESTS = {
+    "write-a-module.md",  # tests/thirdparty installs what it builds
+    *("own-camera.md", "read-the-artifacts.md"),  # test_howto_files has the rigs and readers that they need
+}
 ELSEWHERE = ("make ", "python3 ", "pip ", ".venv/", ". .venv", "cd ", "#", "git ", "rerun ")
 """How lines of a console begin that are for a machine without visint, or for another program."""
 
