@@ -18,6 +18,7 @@ def visint_modules() -> list[Any]:
     from visint_bayes.coherence.orientation import CohereNormals
     from visint_bayes.depth import Depth
     from visint_bayes.gradient import Gradient
+    from visint_bayes.joint.candidates import Candidates
     from visint_bayes.joint.module import Joint
     from visint_bayes.joint.surface import Surface
     from visint_bayes.pairwise import Pairwise
@@ -30,7 +31,7 @@ def visint_modules() -> list[Any]:
 
     coherence = [CohereBoundaries, CohereDepth, CohereDisparity, CohereNormals]
     strategies = [DescriptionLength, FaultLattice, Game, Mrf, Relaxation]
-    return [*coherence, *strategies, Boundaries, Depth, Gradient, Joint, Pairwise, Pointwise, Surface]
+    return [*coherence, *strategies, Boundaries, Candidates, Depth, Gradient, Joint, Pairwise, Pointwise, Surface]
 
 
 @hookimpl

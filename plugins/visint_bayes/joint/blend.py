@@ -51,16 +51,31 @@ def blended(pair: Pair, amplitude: float = 1.0) -> Blend:
     surface = stereo + sum(
         part * (one - stereo) for part, one in zip(parts, pool.surfaces.values(), strict=True)
     )
+    surface = _with_hidden(surface, pool)
     normals = normals_of_slopes(surface, slopes_of(pool.setting.domain, surface), pair.camera)
     sigma, turned = shipped_doubt(which).sigma(doubts_of(pool, parts, surface))
     return Blend(surface.astype(np.float32), sigma, normals, turned, parts, pool, signs)
+
+
+def _with_hidden(surface: Array, pool: Pool) -> Array:
+    """What the right view does not see is taken from brightness where one albedo explains it, else from stereo."""
+    import cv2
+
+    setting, found = pool.setting, pool.reflectance
+    one = found is not None and len(found.albedo) == 1
+    filling = pool.surfaces.get("round", setting.stereo) if one else setting.stereo
+    strip = (setting.hidden & ~setting.adrift & ~setting.unseen).astype(np.float32)
+    part = cv2.GaussianBlur(strip, (0, 0), max(setting.zoom, 0.7))
+    return surface + np.minimum(1.5 * part, 1) * (filling - surface)
 
 
 def _enlarged(small: Blend, pair: Pair) -> Blend:
     """The blend at the pair's own size: smooth maps go up linearly, and the image's detail decides the mask."""
     inside = small.pool.setting.domain.inside
     size = pair.left.shape
-    disparity, sigma, turned = (enlarged(one, inside, size) for one in (small.disparity, small.sigma, small.turned))
+    disparity, sigma, turned = (
+        enlarged(one, inside, size) for one in (small.disparity, small.sigma, small.turned)
+    )
     normals = enlarged(np.nan_to_num(small.normals), inside, size)
     with np.errstate(invalid="ignore", divide="ignore"):
         normals = normals / np.linalg.norm(normals, axis=-1, keepdims=True)

@@ -35,7 +35,9 @@ class SlopeTerm(NamedTuple):
     wanted: Array
 
 
-def slope_term(known: Brightness | None, amplitude: float, surface: Array, slopes: Array, camera: Camera) -> SlopeTerm:
+def slope_term(
+    known: Brightness | None, amplitude: float, surface: Array, slopes: Array, camera: Camera
+) -> SlopeTerm:
     """n·l linearised by the slopes of the current surface: it constrains the slope along the light only.
 
     ``amplitude`` scales its weight; 0 takes shading out.

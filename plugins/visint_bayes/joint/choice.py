@@ -45,7 +45,9 @@ class Choice:
     @classmethod
     def of(cls, values: dict[str, Any]) -> Choice:
         """From what :func:`json.loads` gives."""
-        arrays = {name: np.asarray(values[name], float) for name in ("middle", "spread", "depth", "shape", "risk")}
+        arrays = {
+            name: np.asarray(values[name], float) for name in ("middle", "spread", "depth", "shape", "risk")
+        }
         return cls(tuple(values["names"]), caution=values["caution"], warmth=values["warmth"], **arrays)
 
 

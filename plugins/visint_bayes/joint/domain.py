@@ -46,7 +46,9 @@ class Domain:
 
     def cut_out(self, box: tuple[slice, slice]) -> Domain:
         """What lies in a rectangle that holds all of it."""
-        return Domain(*(np.ascontiguousarray(part[box]) for part in (self.inside, self.across, self.down, self.pieces)))
+        return Domain(
+            *(np.ascontiguousarray(part[box]) for part in (self.inside, self.across, self.down, self.pieces))
+        )
 
 
 def _pieces(mask: Array, across: Array, down: Array) -> Array:

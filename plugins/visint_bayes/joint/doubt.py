@@ -62,7 +62,13 @@ def doubts_of(pool: Pool, parts: Array, blend: Array) -> Array:
     recipe = Recipe(0.003)
     plate = 1 / np.sqrt(8 * np.sqrt((around + recipe.anchor) * recipe.plate * setting.zoom**2))
     apart, turned = _disagreement(pool, parts, blend, normals)
-    signs = [np.log(apart + 0.02), np.log(turned + 0.01), np.log(plate), setting.hidden, np.log(_facing(normals))]
+    signs = [
+        np.log(apart + 0.02),
+        np.log(turned + 0.01),
+        np.log(plate),
+        setting.hidden,
+        np.log(_facing(normals)),
+    ]
     return np.stack([*signs, _rim(setting.domain.inside, 3 * setting.zoom)], axis=-1).astype(np.float32)
 
 

@@ -69,6 +69,8 @@ class Setting:
         What shading knows; None without a light.
     zoom
         Width of the object's image by that of the same at 256 pixels.
+    hold
+        Least weight of the anchor on what the right view does not see, px⁻².
     """
 
     domain: Domain
@@ -81,10 +83,9 @@ class Setting:
     camera: Camera
     brightness: Brightness | None = None
     zoom: float = 1.0
+    hold: float = 0.3
 
 
-HOLD = 0.3
-"""Least weight of the anchor on what the right view does not see, px⁻²."""
 TURNING = 4.0
 """What the right view does not see is turning away: its plate is that of the surface."""
 ADRIFT = 1e-4
@@ -168,7 +169,7 @@ def _pulls(setting: Setting, recipe: Recipe, surface: Array, box: tuple[slice, s
     """Weight (px⁻²) of what pulls at single pixels, and the pull; inside the box."""
     data = data_term(setting.views, surface, setting.gap)
     seen = np.where(setting.unseen, np.float32(0), np.float32(1))
-    anchor = np.where(setting.hidden, np.maximum(recipe.anchor, HOLD), recipe.anchor) * seen
+    anchor = np.where(setting.hidden, np.maximum(recipe.anchor, setting.hold), recipe.anchor) * seen
     anchor = np.where(setting.adrift, ADRIFT, anchor)
     trust = data.weight * seen
     pull = trust * (data.target - surface) + anchor * (setting.stereo - surface)

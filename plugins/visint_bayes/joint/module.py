@@ -12,6 +12,7 @@ from visint.fields import Camera, DepthEvidence, DisparityEvidence, IncidenceEvi
 from visint.fields.geometry import depth_from_disparity, disparity_evidence, normals_from_depth
 from visint.module import Context, Module, Params, Ports
 from visint_bayes.joint.blend import Blend, blended
+from visint_bayes.joint.objects import pair_of
 from visint_bayes.joint.photographs import preferred
 from visint_bayes.joint.setting import Pair
 
@@ -132,31 +133,10 @@ class Joint(Module[JointParams, JointInputs, JointOutputs]):
 
 def _pair(inputs: JointInputs, camera: Camera) -> Pair | None:
     """What the energy wants; None where there is no void, or not enough is given."""
-    from visint_bayes.joint.void import foreground
-
     if inputs.left is None or inputs.right is None or inputs.matched is None:
         return None
-    inside, inside_right = foreground(inputs.left), foreground(inputs.right)
-    if inside is None or inside_right is None:
-        return None
-    stereo = np.nan_to_num(inputs.matched, nan=float(np.nanmedian(inputs.matched)))
-    there = _seen_from_the_right(stereo, inside)
     light = inputs.light if inputs.incidence_evidence else None
-    return Pair(inputs.left, inputs.right, inside, inside_right, stereo, there, camera, light)
-
-
-def _seen_from_the_right(stereo: Array, inside: Array) -> Array:
-    from scipy.ndimage import distance_transform_edt
-
-    from visint_bayes.joint import _kernels
-
-    there = np.empty_like(stereo)
-    _kernels.nearest_there(stereo, inside, there)
-    unknown = ~np.isfinite(there)
-    if unknown.all():
-        return np.zeros_like(stereo)
-    nearest = distance_transform_edt(unknown, return_distances=False, return_indices=True)
-    return np.ascontiguousarray(there[tuple(nearest)])
+    return pair_of((inputs.left, inputs.right), inputs.matched, camera, light)
 
 
 def _report(blend: Blend, ctx: Context) -> None:

@@ -12,16 +12,22 @@ __all__ = ["Reflectance", "reflectance"]
 
 APART = 1.45
 """Albedos closer than this ratio are one."""
+TOO_SPREAD = 0.3
+"""Log albedo that spreads more about its classes holds more of them."""
 STEP = 0.02
 """Bin of the histogram of log albedo."""
 
 
 class Reflectance(NamedTuple):
-    """``albedo`` of each class, ascending; ``labels`` int32 (H, W), 0 where unknown; ``shine`` bool (H, W)."""
+    """``albedo`` of each class, ascending; ``labels`` int32 (H, W), 0 where unknown; ``shine`` bool (H, W).
+
+    ``misfit``: robust standard deviation of log brightness against it.
+    """
 
     albedo: Array
     labels: Array
     shine: Array
+    misfit: float
 
 
 def reflectance(brightness: Array, cosine: Array, mask: Array, noise: float, zoom: float) -> Reflectance:
@@ -41,17 +47,34 @@ def reflectance(brightness: Array, cosine: Array, mask: Array, noise: float, zoo
     sure = mask & (cosine > 0.35) & (brightness > 4 * noise + 0.01)
     if sure.sum() < 30:
         level = float(np.percentile(brightness[mask], 99)) if mask.any() else 1.0
-        return Reflectance(np.array([max(level, 1e-3)]), mask.astype(np.int32), np.zeros_like(mask))
+        return Reflectance(np.array([max(level, 1e-3)]), mask.astype(np.int32), np.zeros_like(mask), np.inf)
     ratio = np.log(brightness[sure] / cosine[sure])
     levels = _modes(ratio, 1 / (1 - np.minimum(cosine[sure], 1) ** 2 + 0.05))
     levels = _matte(levels, ratio, cosine[sure])
+    if _spread(ratio, levels) > TOO_SPREAD:
+        levels = _halves(ratio)
     albedo = np.exp(levels)
     labels = _labels(brightness, cosine, mask, levels)
     shine = np.zeros_like(mask)
     if len(albedo) == 1:
-        shine = _widened(mask & (brightness > 1.04 * albedo[0] + 3 * noise), 4 * zoom)
-        shine &= mask
-    return Reflectance(albedo, labels, shine)
+        shine = _widened(mask & (brightness > 1.04 * albedo[0] + 3 * noise), 4 * zoom) & mask
+    return Reflectance(albedo, labels, shine, _spread(ratio, levels))
+
+
+def _spread(ratio: Array, levels: Array) -> float:
+    """Robust standard deviation of log albedo about the nearest class."""
+    return float(1.4826 * np.median(np.abs(ratio[:, None] - levels).min(axis=1)))
+
+
+def _halves(ratio: Array) -> Array:
+    """Two classes where the histogram shows no valley: the two means that spread least (Lloyd)."""
+    levels = np.percentile(ratio, [20, 80])
+    for _ in range(12):
+        upper = ratio > levels.mean()
+        if upper.all() or not upper.any():
+            break
+        levels = np.array([np.median(ratio[~upper]), np.median(ratio[upper])])
+    return np.asarray(levels)
 
 
 def _modes(ratio: Array, weight: Array) -> Array:
@@ -75,7 +98,10 @@ def _modes(ratio: Array, weight: Array) -> Array:
 def _matte(levels: Array, ratio: Array, cosine: Array) -> Array:
     """Without the classes seen only where the surface faces the light: those are highlights."""
     nearest = np.abs(ratio[:, None] - levels).argmin(axis=1)
-    steep = [np.percentile(cosine[nearest == k], 10) < 0.85 if (nearest == k).any() else False for k in range(len(levels))]
+    steep = [
+        np.percentile(cosine[nearest == k], 10) < 0.85 if (nearest == k).any() else False
+        for k in range(len(levels))
+    ]
     steep[0] = True
     return levels[np.array(steep)]
 
@@ -105,4 +131,7 @@ def _widened(mask: Array, reach: float) -> Array:
 
     size = 2 * round(reach) + 1
     kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
-    return np.asarray(cv2.dilate(cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)), kernel) > 0)
+    return np.asarray(
+        cv2.dilate(cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)), kernel)
+        > 0
+    )

@@ -26,6 +26,9 @@ MODEL = 0.03
 TOO_MUCH_SHINE = 0.35
 """Of the object: beyond, highlights are no highlights."""
 
+FIRM, FREE = 0.3, 0.003
+"""How firmly what the right view does not see is held to the stereo, px⁻²: freely where one albedo makes shading
+worth more there."""
 REACH = 10.0
 """How far from a depth edge stereo is not believed, px at 256 pixels."""
 
@@ -93,9 +96,12 @@ def brightened(
     usable = _inner(pair.inside) & ~found.shine
     incidence = np.where(usable, masked_blur(image, inside, blur) / albedo, np.nan).astype(np.float32)
     sigma = np.sqrt((noise / albedo) ** 2 + 4 * np.pi * blur_for(0.03) ** 2 * MODEL**2).astype(np.float32)
-    shiny = found.shine if found.shine.sum() < TOO_MUCH_SHINE * pair.inside.sum() else np.zeros_like(found.shine)
+    shiny = (
+        found.shine if found.shine.sum() < TOO_MUCH_SHINE * pair.inside.sum() else np.zeros_like(found.shine)
+    )
     known = Brightness(incidence, sigma / max(amplitude, 1e-6) ** 0.5, pair.light) if amplitude > 0 else None
-    return replace(setting, brightness=known, unseen=shiny), found
+    hold = FIRM if known is None or len(found.albedo) > 1 else FREE
+    return replace(setting, brightness=known, unseen=shiny, hold=hold), found
 
 
 def with_cuts(setting: Setting, pair: Pair, noise: float, surface: Array) -> tuple[Setting, Array]:

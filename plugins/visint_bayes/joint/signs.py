@@ -54,6 +54,7 @@ def _of_scene(pool: Pool, judge: _Judge) -> list[float]:
         np.log(pool.noise + 0.003),
         np.log(setting.zoom),
         float(len(found.albedo)) if found else 0.0,
+        np.log(found.misfit + 0.02) if found else 0.0,
         float(found.shine[inside].mean()) if found else 0.0,
         float(setting.hidden[inside].mean()),
         *(judge.distance(other, first) for other in others),
@@ -97,7 +98,9 @@ class _Judge:
         slopes = slopes_of(self.setting.domain, surface)
         cosine = lighting(surface, slopes, self.setting.camera, self.light).cosine
         seen = self._warped(self.right, surface) / self.albedo
-        return _misfit(known.incidence - cosine), _misfit(np.where(np.isfinite(known.incidence), seen, np.nan) - cosine)
+        return _misfit(known.incidence - cosine), _misfit(
+            np.where(np.isfinite(known.incidence), seen, np.nan) - cosine
+        )
 
     def _warped(self, image: Array, surface: Array) -> Array:
         from visint_bayes.joint import _kernels

@@ -16,20 +16,22 @@ from visint_lab.trials.reconstruction import Reconstruction
 
 __all__ = ["SystemVariant", "baseline_of", "controls_of", "cues_of", "installed", "reconstruct"]
 
-_BASELINES = {"non_uniform": "stereo", "uniform_bayesian": "stereo", "joint": "stereo_sgm"}
+_BASELINES = {"non_uniform": "stereo", "uniform_bayesian": "stereo", "joint": "stereo"}
 _FALLBACK = "stereo_sgm"
 
 
 @dataclass(frozen=True)
 class SystemVariant:
-    """A graph as it is, under one of its controls, or without one of its cues."""
+    """A graph as it is, with other parameters, under one of its controls, or without one of its cues."""
 
     graph: str
     control: str | None = None
     without: tuple[str, ...] = ()
+    settings: tuple[tuple[str, float], ...] = ()
 
     def __str__(self) -> str:
         parts = [f"control {self.control}"] if self.control else []
+        parts += [f"{name} = {value:g}" for name, value in self.settings]
         parts += [f"without {cue}" for cue in self.without]
         return ", ".join([self.graph, *parts])
 
@@ -42,10 +44,12 @@ class SystemVariant:
             If there is no such graph, control or cue.
         """
         graph = visint.load(self.graph)
-        if self.control is None and not self.without:
+        if self.control is None and not self.without and not self.settings:
             return graph
         facade: Any = visint
-        altered: visint.Graph = facade.alter(graph, control=self.control, without=self.without)
+        altered: visint.Graph = facade.alter(
+            graph, settings=dict(self.settings), control=self.control, without=self.without
+        )
         return altered
 
 

@@ -1,0 +1,38 @@
+"""A pair that shows objects before a void, ready for the energy."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from visint.arrays import Array
+from visint.fields import Camera, Light
+from visint_bayes.joint.setting import Pair
+
+__all__ = ["pair_of"]
+
+
+def pair_of(images: tuple[Array, Array], matched: Array, camera: Camera, light: Light | None) -> Pair | None:
+    """The pair of the left and right image with the left view's matched disparity; None where there is no void."""
+    from visint_bayes.joint.void import foreground
+
+    inside, inside_right = (foreground(image) for image in images)
+    if inside is None or inside_right is None or not np.isfinite(matched).any():
+        return None
+    stereo = np.nan_to_num(matched, nan=float(np.nanmedian(matched))).astype(np.float32)
+    there = _seen_from_the_right(stereo, inside)
+    return Pair(*images, inside, inside_right, stereo, there, camera, light)
+
+
+def _seen_from_the_right(stereo: Array, inside: Array) -> Array:
+    """The right view's disparity that the left one implies, complete."""
+    from scipy.ndimage import distance_transform_edt
+
+    from visint_bayes.joint import _kernels
+
+    there = np.empty_like(stereo)
+    _kernels.nearest_there(stereo, inside, there)
+    unknown = ~np.isfinite(there)
+    if unknown.all():
+        return np.zeros_like(stereo)
+    nearest = distance_transform_edt(unknown, return_distances=False, return_indices=True)
+    return np.ascontiguousarray(there[tuple(nearest)])
