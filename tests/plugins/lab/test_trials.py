@@ -103,7 +103,7 @@ def test_a_table_runs_with_stereo_alone():
     assert result.middle("no_such_system") is None
 
 
-@pytest.mark.parametrize("number", ["5.2", "5.4"])
+@pytest.mark.parametrize("number", ["5.2", pytest.param("5.4", marks=pytest.mark.slow)])
 def test_reproduce_says_what_is_missing(number, tmp_path):
     """The verb prints the table, names absent systems and the errata, and writes CSV and a page."""
     try:
