@@ -25,7 +25,6 @@ class Beside:
         from visint.engine.profile import Profile
         from visint.results.recording import Recording
 
-        self.paths = tuple(path for path in (trace, rerun) if path)
         self._trace, self._rerun = trace, rerun
         self._profile = Profile() if trace else None
         self._recording = Recording(graph) if rerun else None

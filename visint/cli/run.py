@@ -99,8 +99,8 @@ def command(  # noqa: PLR0913, PLR0917 - the options of a command line are many,
     bound = alter(bound, settings=settings(set_ or []), without=without or (), control=control or None)
     given = typed.sources(bound)
     sources = before.sources(given) if before else given
+    _refuse_now(out, (trace, rerun), against, force=force)
     beside = Beside(bound, trace, rerun)
-    _refuse_now(out, beside.paths, against, force=force)
     options = Options(
         seed=seed if seed is not None else before.seed if before else 0,
         threads=threads,
@@ -128,7 +128,7 @@ def _refuse_now(out: Path, others: tuple[str, ...], against: str, *, force: bool
     io.OutputFolder(out, force=force)
     place = out.absolute()
     _writable(next(folder for folder in (place, *place.parents) if folder.exists()))
-    for home in {Path(path).absolute().parent for path in others} - {place}:
+    for home in {Path(path).absolute().parent for path in others if path} - {place}:
         _writable(home)
 
 

@@ -272,6 +272,7 @@ async function show(box) {
   const note = made("p", { class: "note" }, `${help} ${box.dataset.note}`);
   box.replaceChildren(canvas, tools, note);
   paint();
+  canvas.addEventListener("webglcontextlost", () => box.prepend(made("p", {}, "The browser has dropped the drawing: reload the page to see it again.")));
   new ResizeObserver(paint).observe(canvas);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", paint);
 }
