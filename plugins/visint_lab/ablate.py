@@ -28,6 +28,7 @@ def command(
     truth: Annotated[Path | None, typer.Option(help="Another folder to take the truth from.")] = None,
     size: Annotated[int, typer.Option(min=32, max=2048, help="Rows and columns of a rendered scene.")] = 512,
     out: Annotated[Path | None, typer.Option(help="Folder for ablation.csv and contributions.csv.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="As JSON on stdout.")] = False,
 ) -> None:
     """Show what each cue adds: a graph as it is, by its controls, without each spoke.
 
@@ -35,8 +36,9 @@ def command(
     negative where it does harm, and the mean share of the depth that it decided. A control is a cue whose
     amplitude is zero, all else kept; it is set beside the cue whose name it bears.
     """
+    from visint_lab.trials import grid
     from visint_lab.trials.contribution import contributions
-    from visint_lab.trials.grid import aligned, as_csv, number
+    from visint_lab.trials.grid import as_csv, number
     from visint_lab.trials.reconstruction import scored
     from visint_lab.trials.systems import SystemVariant, baseline_of, controls_of, cues_of, reconstruct
 
@@ -51,15 +53,24 @@ def command(
     found = {name: {**scored(one, shown), "seconds": one.cost.wall} for name, one in made.items()}
     keys = [key for key in KEYS if any(key in scores for scores in found.values())]
     rows = [[name, *(number(scores.get(key), 3) for key in keys)] for name, scores in found.items()]
-    print(aligned(["", *keys], rows))
     own = contributions(variants[0], variants, found, made[str(variants[0])].shares)
+    if as_json:
+        print(grid.as_json({"scores": (["", *keys], rows), "contributions": _contributed(own)}))
+    else:
+        _tell(graph, (["", *keys], rows), own)
+    if out is not None:
+        _save(out, {"ablation.csv": as_csv(["", *keys], rows), "contributions.csv": as_csv(*_contributed(own))})
+
+
+def _tell(graph: str, scores: tuple[list[str], list[list[str]]], own: list[Contribution]) -> None:
+    from visint_lab.trials.grid import aligned
+
+    print(aligned(*scores))
     if own:
         print(f"\nWhat {graph} gains by a cue, % of each error; and how much of the depth the cue decided")
         print(aligned(*_contributed(own)))
     else:
         print(f"\n{graph} names no controls and has no spokes: there is nothing to leave out.")
-    if out is not None:
-        _save(out, {"ablation.csv": as_csv(["", *keys], rows), "contributions.csv": as_csv(*_contributed(own))})
 
 
 def _contributed(own: list[Contribution]) -> tuple[list[str], list[list[str]]]:

@@ -25,7 +25,7 @@ EXAMPLES = (
 )
 
 
-def command(
+def command(  # noqa: PLR0913, PLR0917 - the options of a command line are many, and typer reads them here
     what: Annotated[
         str,
         typer.Argument(
@@ -43,6 +43,7 @@ def command(
     peer: Annotated[list[str] | None, typer.Option(help="Peers by name; all, or none.")] = None,
     size: Annotated[int, typer.Option(min=32, max=2048, help="Rows and columns of rendered scenes.")] = 512,
     out: Annotated[Path | None, typer.Option(help="Folder for bench.csv, scenes.csv and bench.html.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="As JSON on stdout.")] = False,
 ) -> None:
     """Hold systems and peers against each other: quality, time and memory in one table."""
     from visint.errors import UsageError
@@ -62,7 +63,7 @@ def command(
         print(_line(heat), file=sys.stderr)
         found.append(heat)
     decides = "bad2" if what == "stereo" else "rmse"
-    _tell(what, found, standings(found, decides), out)
+    _tell(what, found, standings(found, decides), out, as_json=as_json)
 
 
 def _peers(asked: list[str] | None) -> tuple[str, ...]:
@@ -88,8 +89,10 @@ def _line(heat: Heat) -> str:
     return f"{heat.pair}: {heat.entrant}: " + ", ".join(f"{key} {value:.3g}" for key, value in shown.items())
 
 
-def _tell(what: str, found: Sequence[Heat], order: Sequence[Standing], out: Path | None) -> None:
-    from visint_lab.trials.grid import aligned
+def _tell(
+    what: str, found: Sequence[Heat], order: Sequence[Standing], out: Path | None, *, as_json: bool
+) -> None:
+    from visint_lab.trials import grid
 
     keys = STEREO if what == "stereo" else RUN
     decides = keys[1] if what == "stereo" else keys[0]
@@ -97,7 +100,8 @@ def _tell(what: str, found: Sequence[Heat], order: Sequence[Standing], out: Path
     rows = [_row(one, keys) for one in order]
     first = order[0].entrant
     note = f"Medians over {order[0].pairs} pairs; worse: pairs where {decides} is worse than {first}'s."
-    print(aligned(head, rows) + "\n\n" + note)
+    told = grid.as_json({what: (head, rows)}, [note]) if as_json else grid.aligned(head, rows) + "\n\n" + note
+    print(told)
     if out is not None:
         _save(out, (head, rows, note), found, (order, decides))
 

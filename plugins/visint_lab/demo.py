@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -29,6 +30,7 @@ def command(
     force: Annotated[
         bool, typer.Option("--force", help="Write into a folder that holds something else.")
     ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="As JSON on stdout.")] = False,
 ) -> None:
     """Render a textured sphere before a plane, reconstruct it, and say where the report is."""
     import visint
@@ -43,7 +45,12 @@ def command(
     given = _wanted(bound, pair, files)
     result = visint.run(bound, given)
     result.save(out, force=force, sources={name: files[name] for name in files if name in given})
-    print(comparison(result["depth"], pair), file=sys.stderr)
+    said = comparison(result["depth"], pair)
+    if as_json:
+        told = {"out": str(out), "seconds": result.seconds, "against_the_truth": said}
+        print(json.dumps(told | {"warnings": [warned._asdict() for warned in result.warnings]}, indent=1))
+        return
+    print(said, file=sys.stderr)
     print((out / "report.html").resolve())
 
 

@@ -22,22 +22,24 @@ EXAMPLES = (
 )
 
 
-def command(
+def command(  # noqa: PLR0913, PLR0917 - the options of a command line are many, and typer reads them here
     table: Annotated[str, typer.Argument(help="4.5, 4.6, 4.7, 4.8, 5.2, 5.3 or 5.4.")],
     out: Annotated[Path | None, typer.Option(help="Folder for table.csv and table.html.")] = None,
     size: Annotated[int, typer.Option(min=32, max=2048, help="Rows and columns of the images.")] = 512,
     seeds: Annotated[int, typer.Option(min=0, help="Random poses instead of the chosen one.")] = 0,
     system: Annotated[list[str] | None, typer.Option(help="Graphs beside the table's own.")] = None,
     noise: Annotated[str | None, typer.Option(help="Other noise: none, 2%, 10% or x10%.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="As JSON on stdout.")] = False,
 ) -> None:
     """Set a published table beside what the systems here give, with their controls."""
     from visint.errors import UsageError
     from visint_lab.trials.published import IMPROVEMENTS, TIMES
 
     if table in TIMES:
-        _times(table, size, out)
+        _times(table, size, out, as_json=as_json)
     elif table in IMPROVEMENTS:
-        _improvements(_with_noise(IMPROVEMENTS[table], noise), size, _seeds(seeds), system or ["joint"], out)
+        asked = _with_noise(IMPROVEMENTS[table], noise)
+        _improvements(asked, size, _seeds(seeds), system or ["joint"], (out, as_json))
     else:
         known = ", ".join(sorted({**IMPROVEMENTS, **TIMES}))
         raise UsageError.of("VI701", f"no table {table!r} is known here", choices=known)
@@ -54,9 +56,13 @@ def _with_noise(table: ImprovementTable, noise: str | None) -> ImprovementTable:
 
 
 def _improvements(
-    table: ImprovementTable, size: int, seeds: list[int | None], systems: list[str], out: Path | None
+    table: ImprovementTable,
+    size: int,
+    seeds: list[int | None],
+    systems: list[str],
+    manner: tuple[Path | None, bool],
 ) -> None:
-    from visint_lab.trials.grid import aligned, as_csv
+    from visint_lab.trials.grid import as_csv
     from visint_lab.trials.improvement import improvements
     from visint_lab.trials.systems import installed
     from visint_lab.trials.telling import remarks, rows_of
@@ -68,11 +74,21 @@ def _improvements(
         results.append(result)
     head, rows = rows_of(results)
     notes = remarks(table, results, [name for name in wanted if not installed(name)])
-    print(f"Table {table.number}: {table.title}\n")
-    print(aligned(head, rows))
-    print("\n" + "\n".join(f"* {note}" for note in notes))
+    out, as_json = manner
+    _tell(f"Table {table.number}: {table.title}", (head, rows), notes, as_json=as_json)
     if out is not None:
         _save(out, as_csv(head, rows), _page(table, (head, rows), notes, results))
+
+
+def _tell(title: str, table: tuple[list[str], list[list[str]]], notes: Sequence[str], *, as_json: bool) -> None:
+    from visint_lab.trials import grid
+
+    if as_json:
+        print(grid.as_json({title: table}, notes))
+        return
+    print(f"{title}\n")
+    print(grid.aligned(*table))
+    print("\n" + "\n".join(f"* {note}" for note in notes))
 
 
 def _page(
@@ -114,17 +130,15 @@ def _save(out: Path, text: str, html: str) -> None:
     print((out / "table.html").resolve(), file=sys.stderr)
 
 
-def _times(number: str, size: int, out: Path | None) -> None:
+def _times(number: str, size: int, out: Path | None, *, as_json: bool) -> None:
     from visint_lab.trials import page
-    from visint_lab.trials.grid import aligned, as_csv
+    from visint_lab.trials.grid import as_csv
     from visint_lab.trials.published import TIMES
     from visint_lab.trials.timing import time_rows
 
     table = TIMES[number]
     head, rows, notes = time_rows(table, size)
-    print(f"Table {number}: {table.title}\n")
-    print(aligned(head, rows))
-    print("\n" + "\n".join(f"* {note}" for note in notes))
+    _tell(f"Table {number}: {table.title}", (head, rows), notes, as_json=as_json)
     if out is not None:
         parts = [page.table(head, rows), page.listed(notes)]
         _save(out, as_csv(head, rows), page.page(f"Table {number}: {table.title}", parts))

@@ -51,6 +51,33 @@ def test_modules_are_plugins_then_ids():
     assert complete.modules("nope.x") == []
 
 
+@pytest.mark.parametrize("verb", sorted(entry.name for entry in entry_points(group="visint.commands")))
+def test_verbs_of_the_lab_speak_json(capsys, verb):
+    """As our own do; the schema is JSON as it is."""
+    assert main([verb, "--help"]) == 0
+    assert "--json" in capsys.readouterr().out
+
+
+def test_demo_as_json(visint):
+    """One object on stdout, nothing beside it."""
+    told = visint("demo", "--size", 64, "--out", "scene", "--json").json
+    assert told["out"] == "scene"
+    assert "median depth error" in told["against_the_truth"]
+
+
+def test_a_table_as_json():
+    """Figures are numbers, a dash is nothing, what names a row has a name."""
+    from json import loads
+
+    from visint_lab.trials.grid import as_json
+
+    told = loads(as_json({"scores": (["", "bad2 %"], [["sgm", "4.5"], ["x", "–"]])}, ["a note"]))
+    assert told == {
+        "scores": [{"name": "sgm", "bad2 %": 4.5}, {"name": "x", "bad2 %": None}],
+        "notes": ["a note"],
+    }
+
+
 @pytest.mark.parametrize("verb", [*OWN, *sorted(entry.name for entry in entry_points(group="visint.commands"))])
 def test_every_verb_shows_examples_on_lines_of_their_own(capsys, verb):
     """Each begins with the program's name and is not broken across lines."""

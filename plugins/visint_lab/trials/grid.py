@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import csv
+import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from io import StringIO
 
-__all__ = ["aligned", "as_csv", "number"]
+__all__ = ["aligned", "as_csv", "as_json", "number"]
 
 Cells = Sequence[Sequence[str]]
 
@@ -28,6 +29,26 @@ def aligned(head: Sequence[str], rows: Cells) -> str:
 def _padded(row: Sequence[str], widths: Sequence[int]) -> list[str]:
     first, *others = zip(row, widths, strict=True)
     return [first[0].ljust(first[1]), *(cell.rjust(width) for cell, width in others)]
+
+
+def as_json(parts: Mapping[str, tuple[Sequence[str], Cells]], notes: Sequence[str] = ()) -> str:
+    """The same for programs: a list of rows a table, each by the columns' names; what is a number is one."""
+    tables = {
+        name: [{key or "name": _value(cell) for key, cell in zip(head, row, strict=True)} for row in rows]
+        for name, (head, rows) in parts.items()
+    }
+    return json.dumps({**tables, "notes": list(notes)}, indent=1, ensure_ascii=False)
+
+
+def _value(cell: str) -> str | float | None:
+    """A cell as JSON has it; a dash is null."""
+    if cell == "–":
+        return None
+    try:
+        found = float(cell)
+    except ValueError:
+        return cell
+    return found if math.isfinite(found) else cell
 
 
 def as_csv(head: Sequence[str], rows: Cells) -> str:
