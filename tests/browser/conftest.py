@@ -43,14 +43,13 @@ def browser(tmp_path_factory):
     opened.quit()
 
 
-def drawn(browser, least=1):
+def drawn(browser, least=1, after="the page was opened"):
     """Waits until the surface was drawn ``least`` times; how often it was."""
     script = "return Number(document.querySelector('.surface canvas')?.dataset.drawn || 0)"
     end = time.monotonic() + 20
     while (count := browser.execute_script(script)) < least:
-        assert time.monotonic() < end, browser.execute_script(
-            "return document.querySelector('.surface').innerText"
-        )
+        told = browser.execute_script("return document.querySelector('.surface').innerText")
+        assert time.monotonic() < end, f"not drawn after {after}: {told}"
         time.sleep(0.05)
     return count
 

@@ -98,7 +98,8 @@ def page(tmp_path_factory):
 def shown(request, browser, page, surface):
     """The browser with the report open, in light and in dark."""
     scheme = {"name": "prefers-color-scheme", "value": request.param}
-    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [scheme]})
+    still = {"name": "prefers-reduced-motion", "value": "reduce"}  # a click waits for no scrolling
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [scheme, still]})
     browser.get_log("browser")  # what an earlier page had to say
     browser.get(page)
     surface.drawn(browser)
@@ -171,16 +172,17 @@ def test_the_surface_turns_by_keyboard_and_mouse(shown, surface):
     canvas = shown.find_element("css selector", ".surface canvas")
     shown.execute_script("arguments[0].focus()", canvas)
     first = surface.seen(shown)
-    for act in (
-        lambda: canvas.send_keys(Keys.ARROW_RIGHT),
-        lambda: canvas.send_keys("+"),
-        lambda: ActionChains(shown).drag_and_drop_by_offset(canvas, 60, 20).perform(),
-        lambda: shown.find_element("css selector", ".tools input[value='2']").click(),
-    ):
+    acts = {
+        "arrow": lambda: canvas.send_keys(Keys.ARROW_RIGHT),
+        "plus": lambda: canvas.send_keys("+"),
+        "drag": lambda: ActionChains(shown).drag_and_drop_by_offset(canvas, 60, 20).perform(),
+        "normals": lambda: shown.find_element("css selector", ".tools input[value='2']").click(),
+    }
+    for name, act in acts.items():
         before, count = surface.seen(shown), surface.drawn(shown)
         act()
-        surface.drawn(shown, count + 1)
-        assert np.abs(surface.seen(shown) - before).mean() > 0.1
+        surface.drawn(shown, count + 1, name)
+        assert np.abs(surface.seen(shown) - before).mean() > 0.1, name
     shown.find_element("css selector", ".tools input[value='0']").click()
     shown.execute_script("arguments[0].focus()", canvas)
     canvas.send_keys("0")
