@@ -34,9 +34,8 @@ def sheet() -> bytes:
     whole = visint.run(graph, **given)
     view = 0.7 * pair.left ** (1 / 2.2)
     view[region_boundaries(whole["regions"])] = 1
-    parts = [view, shown(whole["disparity"])]
-    for result in (alone, whole):
-        parts.append((np.abs(result["disparity"] - pair.disparity) / WORST).clip(0, 1))
+    errors = [(np.abs(result["disparity"] - pair.disparity) / WORST).clip(0, 1) for result in (alone, whole)]
+    parts = [view, shown(whole["disparity"]), *errors]
     parts = [block_mean(np.nan_to_num(part).astype(np.float32)) for part in parts]
     grid = np.vstack([np.hstack(parts[:2]), np.hstack(parts[2:])])
     return encode_png(np.rint(63 * grid).astype(np.uint8) * 4)

@@ -53,8 +53,8 @@ def scored(value, trust, pair, filled, bad):
 def test_planes_on_public_pairs(real_pair, public_scenes, filled, bad):
     """Planes of regions and a second matching along them: at most 8.0 % and 1.15 px, AUSE 1.2 (other fold).
 
-    Against matching alone at the same range: worse by more than 0.5 points on at most two pairs, and the squared
-    error no worse in the median.
+    Against matching alone at the same range: worse by more than 0.5 points on at most two pairs, and the
+    squared error no worse in the median.
     """
     alone, whole = [], []
     for scene in public_scenes:
