@@ -8,7 +8,7 @@ from pydantic import Field
 from visint.arrays import Array, Confidence, Image, Mask
 from visint.module import Context, Module, Params, Ports
 from visint_shading.lighting.rays import cosines
-from visint_shading.photometry import Photometry, ShadingInputs, photometry_of
+from visint_shading.photometry import Photometry, ShadingInputs, photometry_of, window_of
 from visint_shading.reflectance.several import several_albedos
 
 __all__ = ["AlbedoOf"]
@@ -20,10 +20,11 @@ class AlbedoParams(Params):
     Parameters
     ----------
     window
-        Over how many full-size pixels the map's slopes are evened before brightness is held against them.
+        Over how many full-size pixels (a fortieth of the width if not given) the map's slopes are evened before
+        brightness is held against them.
     """
 
-    window: float = Field(default=12.0, gt=0)
+    window: float | None = Field(default=None, gt=0)
 
 
 class AlbedoOutputs(Ports):
@@ -53,7 +54,7 @@ class AlbedoOf(Module[AlbedoParams, ShadingInputs, AlbedoOutputs]):
 
     def run(self, inputs: ShadingInputs, ctx: Context) -> AlbedoOutputs:
         """Albedo of the image's size."""
-        found = photometry_of(inputs, max(1.0, self.params.window / ctx.scale))
+        found = photometry_of(inputs, window_of(self.params.window, inputs.image, ctx.scale))
         ctx.check()
         labels = found.seen.labels
         many = several_albedos(found.seen.even, _shade(found), labels)

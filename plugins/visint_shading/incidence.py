@@ -7,7 +7,7 @@ from pydantic import Field
 
 from visint.fields import IncidenceEvidence
 from visint.module import Context, Module, Params, Ports
-from visint_shading.photometry import ShadingInputs, photometry_of
+from visint_shading.photometry import ShadingInputs, photometry_of, window_of
 from visint_shading.premises import PREMISES, tell
 
 __all__ = ["IncidenceOf"]
@@ -19,11 +19,11 @@ class IncidenceParams(Params):
     Parameters
     ----------
     window
-        Over how many full-size pixels the map's slopes are evened before brightness is held against them. Wider
-        suits noisier depth; narrower keeps bends.
+        Over how many full-size pixels (a fortieth of the width if not given) the map's slopes are evened before
+        brightness is held against them. Wider suits noisier depth; narrower keeps bends.
     """
 
-    window: float = Field(default=12.0, gt=0)
+    window: float | None = Field(default=None, gt=0)
 
 
 class IncidenceOutputs(Ports):
@@ -49,7 +49,7 @@ class IncidenceOf(Module[IncidenceParams, ShadingInputs, IncidenceOutputs]):
 
     def run(self, inputs: ShadingInputs, ctx: Context) -> IncidenceOutputs:
         """Incidence of the image's size."""
-        found = photometry_of(inputs, max(1.0, self.params.window / ctx.scale))
+        found = photometry_of(inputs, window_of(self.params.window, inputs.image, ctx.scale))
         ctx.check()
         tell(found, ctx)
         ctx.measure("mean reliability", float(np.mean(found.reliability)))

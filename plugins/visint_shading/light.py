@@ -8,7 +8,7 @@ from pydantic import Field
 
 from visint.fields import Light
 from visint.module import Context, Module, Params, Ports
-from visint_shading.photometry import ShadingInputs, estimated_light
+from visint_shading.photometry import ShadingInputs, estimated_light, window_of
 
 __all__ = ["LightOf"]
 
@@ -19,13 +19,14 @@ class LightParams(Params):
     Parameters
     ----------
     window
-        Over how many full-size pixels the map's slopes are evened. Narrow windows leave noise in the normals,
-        which pulls the light towards the line of sight; wide ones flatten bends, which pulls it away.
+        Over how many full-size pixels (a fortieth of the width if not given) the map's slopes are evened.
+        Narrow windows leave noise in the normals, which pulls the light towards the line of sight; wide ones
+        flatten bends, which pulls it away.
     least
         From which trust on a light is given out; below it the light stays unknown.
     """
 
-    window: float = Field(default=12.0, gt=0)
+    window: float | None = Field(default=None, gt=0)
     least: float = Field(default=0.1, ge=0, le=1)
 
 
@@ -61,7 +62,7 @@ class LightOf(Module[LightParams, ShadingInputs, LightOutputs]):
 
     def run(self, inputs: ShadingInputs, ctx: Context) -> LightOutputs:
         """The light of the reference view."""
-        fit = estimated_light(inputs, max(1.0, self.params.window / ctx.scale))
+        fit = estimated_light(inputs, window_of(self.params.window, inputs.image, ctx.scale))
         ctx.check()
         if fit is None or fit.trust <= self.params.least:
             ctx.assumed("single_light_source", held=False)

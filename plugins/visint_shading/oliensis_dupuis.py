@@ -12,7 +12,7 @@ from visint.fields import NormalsEvidence, ReliefEvidence
 from visint.module import Context, Module, Params, Ports
 from visint_shading.heights.relief import Relief, relief_of
 from visint_shading.lighting.rays import cosines
-from visint_shading.photometry import Photometry, ShadingInputs, photometry_of
+from visint_shading.photometry import Photometry, ShadingInputs, photometry_of, window_of
 from visint_shading.premises import PREMISES, tell
 from visint_shading.slope import angle_error
 
@@ -25,12 +25,13 @@ class OliensisDupuisParams(Params):
     Parameters
     ----------
     window
-        Over how many full-size pixels the map's slopes are evened before it is asked how a surface bends.
+        Over how many full-size pixels (a fortieth of the width if not given) the map's slopes are evened before
+        it is asked how a surface bends.
     otherwise
         How a surface bends at singular points of which the map knows nothing.
     """
 
-    window: float = Field(default=12.0, gt=0)
+    window: float | None = Field(default=None, gt=0)
     otherwise: Literal["convex", "concave"] = "convex"
 
 
@@ -61,7 +62,7 @@ class OliensisDupuis(Module[OliensisDupuisParams, ShadingInputs, OliensisDupuisO
 
     def run(self, inputs: ShadingInputs, ctx: Context) -> OliensisDupuisOutputs:
         """Relief and normals of the image's size."""
-        window = max(1.0, self.params.window / ctx.scale)
+        window = window_of(self.params.window, inputs.image, ctx.scale)
         found = photometry_of(inputs, window)
         ctx.check()
         tell(found, ctx)
@@ -85,29 +86,34 @@ def _silence(shape: tuple[int, ...]) -> OliensisDupuisOutputs:
 
 
 def _answer(found: Photometry, relief: Relief) -> OliensisDupuisOutputs:
-    agreed = _confirmed(found, relief)
     labels = found.seen.labels
-    error = angle_error(found.incidence, found.sigma)
-    apart = np.abs(relief.depth - np.nanmedian(relief.depth)) if np.isfinite(relief.depth).any() else 0
+    apart = _apart(found, relief)
+    agreed = _agreed(apart, labels, found.trust.size)
+    sigma = angle_error(found.incidence, found.sigma) + 0.05 + 0.5 * apart
+    above = np.abs(relief.depth - np.nanmedian(relief.depth)) if np.isfinite(relief.depth).any() else 0
     return OliensisDupuisOutputs(
         relief=ReliefEvidence.of(
-            relief.depth,
-            0.01 * np.abs(relief.depth) + 0.1 * apart,
-            (agreed * found.trust)[labels] * (labels > 0),
+            relief.depth, 0.01 * np.abs(relief.depth) + 0.1 * above, agreed * found.trust[labels] * (labels > 0)
         ),
-        normals=NormalsEvidence.of(relief.normals, error + 0.05, agreed[labels] * found.reliability),
+        normals=NormalsEvidence.of(relief.normals, sigma, agreed * found.reliability),
         singular=relief.singular.group > 0,
     )
 
 
-def _confirmed(found: Photometry, relief: Relief) -> Array:
-    """By label, in [0, 1]: less from 12° of mean angle between relief and map, none from 25°."""
-    labels = found.seen.labels
+def _apart(found: Photometry, relief: Relief) -> Array:
+    """Angle (H, W) between the relief's normals and the map's; 0 where there is no map, NaN where no relief."""
     if found.orientation is None:
-        return np.ones(found.trust.size)
+        return np.where(np.isfinite(relief.normals[..., 2]), 0, np.nan)
     cosine = cosines(relief.normals, found.orientation.normals)
-    there = (labels > 0) & np.isfinite(cosine)
-    count = np.bincount(labels[there], minlength=found.trust.size)
-    angle = np.arccos(np.clip(cosine[there], -1, 1))
-    mean = np.bincount(labels[there], angle, minlength=found.trust.size) / np.maximum(count, 1)
-    return np.clip((0.44 - mean) / 0.23, 0, 1) * (count > 0)
+    return np.asarray(np.arccos(np.clip(cosine, -1, 1)))
+
+
+def _agreed(apart: Array, labels: Array, count: int) -> Array:
+    """In [0, 1]: less where a pixel's normal lies 12° from the map's, or a region's by 12° in the mean; none from
+    30° and 25°. Where ways from several points meet, some pixels are wrong and their neighbours right.
+    """
+    there = (labels > 0) & np.isfinite(apart)
+    members = np.bincount(labels[there], minlength=count)
+    mean = np.bincount(labels[there], apart[there], minlength=count) / np.maximum(members, 1)
+    region = np.clip((0.44 - mean) / 0.23, 0, 1) * (members > 0)
+    return np.asarray(np.clip((0.52 - np.nan_to_num(apart, nan=1.0)) / 0.31, 0, 1) * region[labels])

@@ -17,7 +17,7 @@ from visint_shading.reflectance.judgement import Agreement, agreement_of, trust_
 from visint_shading.surface.flat import flat_regions, with_planes
 from visint_shading.surface.orientation import Orientation, from_depth, from_normals
 
-__all__ = ["Photometry", "ShadingInputs", "estimated_light", "photometry_of"]
+__all__ = ["Photometry", "ShadingInputs", "estimated_light", "photometry_of", "window_of"]
 
 UNTESTED = 0.3
 """Trust where there is no surface to hold brightness against."""
@@ -97,6 +97,11 @@ def photometry_of(inputs: ShadingInputs, window: float) -> Photometry:
     )
 
 
+def window_of(given: float | None, image: Array, scale: int) -> float:
+    """The window in pixels of this level, one at least; by default 1/43 of the image's width (6 of 256)."""
+    return max(1.0, image.shape[1] * 6 / 256 if given is None else given / scale)
+
+
 def estimated_light(inputs: ShadingInputs, window: float) -> LightFit | None:
     """The light that is given, or the one that explains the view; None if none does."""
     view, window = _view(inputs, window)
@@ -118,7 +123,8 @@ def _view(inputs: ShadingInputs, window: float) -> tuple[Seen, float]:
 def _surface(inputs: ShadingInputs, view: Seen, camera: Camera, window: float) -> Orientation | None:
     if inputs.depth is not None:
         surface = from_depth(inputs.depth, inputs.depth_confidence, view.labels, camera, window)
-        return with_planes(surface, inputs.depth, view.labels, flat_regions(view.even, view.labels), camera)
+        flat = flat_regions(view.even, view.labels, view.spread)
+        return with_planes(surface, inputs.depth, view.labels, flat, camera)
     if inputs.normals is not None:
         return from_normals(inputs.normals, view.labels, window)
     return None

@@ -8,7 +8,7 @@ from pydantic import Field
 from visint.arrays import Array
 from visint.fields import NormalsEvidence
 from visint.module import Context, Module, Params, Ports
-from visint_shading.photometry import ShadingInputs, photometry_of
+from visint_shading.photometry import ShadingInputs, photometry_of, window_of
 from visint_shading.premises import PREMISES, tell
 from visint_shading.surface.cone import onto_cone
 
@@ -21,11 +21,11 @@ class SlopeParams(Params):
     Parameters
     ----------
     window
-        Over how many full-size pixels the map's slopes are evened before they give a direction. Wider suits
-        noisier depth; narrower follows bends.
+        Over how many full-size pixels (a fortieth of the width if not given) the map's slopes are evened before
+        they give a direction. Wider suits noisier depth; narrower follows bends.
     """
 
-    window: float = Field(default=12.0, gt=0)
+    window: float | None = Field(default=None, gt=0)
 
 
 class SlopeOutputs(Ports):
@@ -50,7 +50,7 @@ class Slope(Module[SlopeParams, ShadingInputs, SlopeOutputs]):
 
     def run(self, inputs: ShadingInputs, ctx: Context) -> SlopeOutputs:
         """Normals of the image's size."""
-        found = photometry_of(inputs, max(1.0, self.params.window / ctx.scale))
+        found = photometry_of(inputs, window_of(self.params.window, inputs.image, ctx.scale))
         ctx.check()
         tell(found, ctx)
         if found.orientation is None or found.light is None:

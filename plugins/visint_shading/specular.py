@@ -9,7 +9,7 @@ from visint.arrays import Array, Color, Disparity, Image, Mask
 from visint.module import Context, Module, Params, Ports
 from visint_shading.brightness.seen import SATURATED
 from visint_shading.lighting.rays import cosines
-from visint_shading.photometry import Photometry, ShadingInputs, photometry_of
+from visint_shading.photometry import Photometry, ShadingInputs, photometry_of, window_of
 from visint_shading.reflectance.albedo import percentile_by_region
 from visint_shading.reflectance.colour import paler_than_region
 from visint_shading.reflectance.lobe import lobe_of
@@ -25,14 +25,14 @@ class SpecularParams(Params):
     Parameters
     ----------
     window
-        Over how many full-size pixels the map's slopes are evened.
+        Over how many full-size pixels (a fortieth of the width if not given) the map's slopes are evened.
     faintest
         From which part of the brightness a lobe counts as a highlight. Less masks more of it.
     margin
         By how many full-size pixels what is found is widened.
     """
 
-    window: float = Field(default=12.0, gt=0)
+    window: float | None = Field(default=None, gt=0)
     faintest: float = Field(default=0.1, gt=0, lt=1)
     margin: float = Field(default=2.0, ge=0)
 
@@ -73,7 +73,7 @@ class Specular(Module[SpecularParams, SpecularInputs, SpecularOutputs]):
 
     def run(self, inputs: SpecularInputs, ctx: Context) -> SpecularOutputs:
         """Mask and lobe of the image's size."""
-        found = photometry_of(inputs, max(1.0, self.params.window / ctx.scale))
+        found = photometry_of(inputs, window_of(self.params.window, inputs.image, ctx.scale))
         ctx.check()
         lobe = _lobe(found)
         signs = self._signs(inputs, found, lobe)

@@ -88,7 +88,7 @@ def trust_of(found: Agreement, albedo: Array) -> Array:
     the surface's bends is seen. Thresholds lie between lab scenes with and without texture, of seeds 100 to 305
     and the 1992 matcher's depth; see the page on shading.
     """
-    own = _ramp(found.correlation, 0.6, 0.85) * (found.bend > 0.04)
+    own = _ramp(found.correlation, 0.6, 0.85) * (found.bend > 0.015) * (found.contrast > 0.015)
     shared = _ramp(np.asarray(found.pooled), 0.5, 0.8) * _alike(found) * (found.contrast < FLAT)
     even = (1 - _ramp(found.scatter, 0.18, 0.32)) * (1 - _ramp(found.grain, 0.11, 0.2))
     near = 1 - _ramp(np.abs(np.log(np.maximum(albedo, 1e-6) / np.maximum(found.ratio, 1e-6))), 0.15, 0.35)
