@@ -296,14 +296,20 @@ def heights(conic, labels, seeds, tolerance, rounds, cost, sign):
     ``tolerance``, or after ``rounds`` rounds of four sweeps.
     """
     rows, columns = labels.shape
+    fresh = np.zeros(rows, np.int64)  # the sweep in which a row last changed
+    sweep = 0
     for _ in range(rounds):
         changed = 0.0
         for way in range(4):
+            sweep += 1
             dy = 1 if way < 2 else -1
             dx = 1 if way % 2 == 0 else -1
             y0, y1 = (0, rows) if dy > 0 else (rows - 1, -1)
             x0, x1 = (0, columns) if dx > 0 else (columns - 1, -1)
             for y in range(y0, y1, dy):
+                before = fresh[y - dy] if 0 <= y - dy < rows else 0
+                if sweep - max(fresh[y], before) > 4:
+                    continue  # the last sweep this way has seen all there is
                 for x in range(x0, x1, dx):
                     label = labels[y, x]
                     if label == 0 or seeds[y, x] != 0:
@@ -359,5 +365,6 @@ def heights(conic, labels, seeds, tolerance, rounds, cost, sign):
                         changed = max(changed, cost[y, x] - best)
                         cost[y, x] = best
                         sign[y, x] = kind
+                        fresh[y] = sweep
         if changed <= tolerance:
             break

@@ -109,8 +109,9 @@ def _apart(found: Photometry, relief: Relief) -> Array:
 
 
 def _agreed(apart: Array, labels: Array, count: int) -> Array:
-    """In [0, 1]: less where a pixel's normal lies 12° from the map's, or a region's by 12° in the mean; none from
-    30° and 25°. Where ways from several points meet, some pixels are wrong and their neighbours right.
+    """In [0, 1]: less where a pixel's normal lies 12° from the map's, or a region's in the mean; 0 from 30° and 25°.
+
+    Where ways from several points meet, some pixels are wrong and their neighbours right.
     """
     there = (labels > 0) & np.isfinite(apart)
     members = np.bincount(labels[there], minlength=count)

@@ -11,6 +11,8 @@ __all__ = ["propagated"]
 
 FAR = 1e30
 ROUNDS = 12
+ENOUGH = 3e-5
+"""Of ln Z: later rounds that better no height by more are not worth their time."""
 
 
 def propagated(conic: Array, labels: Array, singular: Singular) -> Array:
@@ -26,7 +28,7 @@ def propagated(conic: Array, labels: Array, singular: Singular) -> Array:
     start = np.abs(singular.height - base[singular.bend, singular.label])
     cost = np.where(seeds != 0, start[singular.group], FAR)
     sign = seeds.copy()
-    _kernels.heights(conic, labels, seeds, 1e-5, ROUNDS, cost, sign)
+    _kernels.heights(conic, labels, seeds, ENOUGH, ROUNDS, cost, sign)
     reached = (sign != 0) & (labels > 0)
     return np.where(reached, base[sign, labels] + sign * cost, np.nan)
 
