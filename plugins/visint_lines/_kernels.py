@@ -1,4 +1,4 @@
-"""Loops over the pixels of a label map: its cracks walked as chains, planes fitted inside a region, thinning."""
+"""Loops over the pixels of a label map: cracks walked as chains, planes fitted inside a region, thinning."""
 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
 
@@ -33,7 +33,7 @@ def is_node(labels, bits, r, c):
     """Whether chains end at a lattice point: no, where exactly two pairs of cracks pass each other by."""
     b = bits[r, c]
     degree = (b & 1) + ((b >> 1) & 1) + ((b >> 2) & 1) + ((b >> 3) & 1)
-    if degree == 0 or degree == 2:
+    if degree in (0, 2):
         return False
     if degree < 4:
         return True
@@ -216,7 +216,7 @@ def components(labels):
 
 @njit(cache=True, nogil=True)
 def thinned(lines):
-    """bool (H, W): a skeleton one pixel wide (Zhang and Suen 1984, DOI 10.1145/357994.358023), edges cleared."""
+    """bool (H, W): a skeleton one pixel wide (Zhang and Suen 1984, DOI 10.1145/357994.358023)."""
     height, width = lines.shape
     image = np.zeros((height + 2, width + 2), np.uint8)
     image[1:-1, 1:-1] = lines
@@ -263,7 +263,7 @@ def thinned(lines):
 
 @njit(cache=True, nogil=True)
 def _links(lines, r, c, out):
-    """Fills ``out`` (8, 2) with the neighbours of a skeleton pixel; a diagonal one only if no corner joins both."""
+    """Fills ``out`` (8, 2) with the neighbours of a skeleton pixel; diagonal ones only if no corner joins."""
     height, width = lines.shape
     n = 0
     for dr, dc in ((0, 1), (-1, 0), (0, -1), (1, 0), (-1, 1), (-1, -1), (1, -1), (1, 1)):
@@ -279,7 +279,7 @@ def _links(lines, r, c, out):
 
 @njit(cache=True, nogil=True)
 def walks(lines):
-    """(points (N, 2) row and column, first (A + 1), closed (A)) of a skeleton's chains between ends and branches."""
+    """(points (N, 2) row and column, first (A + 1), closed (A)) of a skeleton's chains between its nodes."""
     height, width = lines.shape
     near, ahead = np.empty((8, 2), np.int64), np.empty((8, 2), np.int64)
     degree = np.zeros((height, width), np.int64)

@@ -71,10 +71,8 @@ def slots(kind: str, angles: Sequence[float]) -> tuple[int, ...]:
     if count < 2:
         return tuple(range(count))
     gaps = _gaps(angles)
-    if kind == "R":
-        first = (gaps.index(min(gaps)) + 2) % count
-    else:  # just behind the widest gap: barbs and bars, and L's first slot
-        first = (gaps.index(max(gaps)) + 1) % count
+    behind = gaps.index(max(gaps)) + 1  # the widest gap: barbs and bars, and L's first slot
+    first = gaps.index(min(gaps)) + 2 if kind == "R" else behind
     return tuple((first + i) % count for i in range(count))
 
 

@@ -17,9 +17,9 @@ BLUNT, BLUNTER = 0.6, 0.42
 def corners(points: Array, closed: bool, angle: float, window: int = 14) -> list[int]:
     """Indices of the corners of a curve whose points (N, 2) lie a pixel apart.
 
-    Two readings of the turn, each with its own sort of noise: tangents of parabolas, which allow for the bend of
-    a curve, and straight lines, less the turn that the bend of either side explains. The second is made at two
-    lengths: the longer is surer of blunt corners, the shorter of those near others.
+    Two readings of the turn, each with its own sort of noise: tangents of parabolas, which allow for
+    bend of a curve, and straight lines, less the turn that the bend of either side explains. The second is
+    made at two lengths: the longer is surer of blunt corners, the shorter of those near others.
 
     Parameters
     ----------

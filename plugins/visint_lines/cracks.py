@@ -1,4 +1,4 @@
-"""The cracks of a label map as curves: lines between the pixels of different regions, closed by construction."""
+"""The cracks of a label map as curves: lines between pixels of different regions, closed by construction."""
 
 from __future__ import annotations
 

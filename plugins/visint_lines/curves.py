@@ -39,7 +39,7 @@ def smoothed(points: Array, sigma: float, closed: bool) -> Array:
 def evenly(points: Array, step: float = 1.0) -> Array:
     """``points`` (N, 2) at about equal distances of ``step`` along the curve, both ends kept."""
     along = np.concatenate([[0.0], np.hypot(*np.diff(points, axis=0).T).cumsum()])
-    count = max(int(round(along[-1] / step)), 1) + 1
+    count = max(round(float(along[-1]) / step), 1) + 1
     at = np.linspace(0.0, along[-1], count)
     return np.stack([np.interp(at, along, points[:, i]) for i in (0, 1)], axis=-1)
 

@@ -101,13 +101,15 @@ class Spoke(NamedTuple):
 class Junction(NamedTuple):
     """A point where arcs meet: column, row, and its arcs counter-clockwise as seen.
 
-    ``frame`` says that the line just leaves the image here.
+    ``frame`` says that the line just leaves the image here; ``smooth``, that two arcs meet without a corner,
+    because something else than their direction changes.
     """
 
     x: float
     y: float
     spokes: tuple[Spoke, ...]
     frame: bool = False
+    smooth: bool = False
 
     @property
     def angles(self) -> tuple[float, ...]:
@@ -141,7 +143,12 @@ class Diagram:
 
 
 def assembled(
-    size: tuple[int, int], places: Array, arcs: list[Arc], angles: list[tuple[float, float]], frame: Array
+    size: tuple[int, int],
+    places: Array,
+    arcs: list[Arc],
+    angles: list[tuple[float, float]],
+    frame: Array,
+    smooth: Array | None = None,
 ) -> Diagram:
     """A diagram from its arcs and the directions in which each leaves its start and its end.
 
@@ -153,15 +160,18 @@ def assembled(
         For each arc its direction away from its start and away from its end, radians, y up.
     frame
         bool (J,): where a line leaves the image.
+    smooth
+        bool (J,): where arcs meet without a corner.
     """
     spokes: list[list[Spoke]] = [[] for _ in places]
     for number, (arc, (away, back)) in enumerate(zip(arcs, angles, strict=True)):
         if not arc.closed:
             spokes[arc.start].append(Spoke(number, True, _turn(away)))
             spokes[arc.end].append(Spoke(number, False, _turn(back)))
+    even = smooth if smooth is not None else np.zeros(len(places), dtype=bool)
     junctions = tuple(
-        Junction(float(x), float(y), tuple(sorted(own, key=lambda spoke: spoke.angle)), bool(edge))
-        for (x, y), own, edge in zip(places, spokes, frame, strict=True)
+        Junction(float(x), float(y), tuple(sorted(own, key=lambda one: one.angle)), bool(edge), bool(flat))
+        for (x, y), own, edge, flat in zip(places, spokes, frame, even, strict=True)
     )
     return Diagram(size, junctions, tuple(arcs))
 

@@ -28,7 +28,7 @@ FADED = 0.6
 
 
 def svg(labels: Labels) -> bytes:
-    """A picture of the labels over the image, (columns × rows) units large; surfaces lie to the right of arrows."""
+    """A picture of the labels over the image, a unit a pixel; surfaces lie to the right of arrows."""
     height, width = labels.diagram.size
     unit = max(height, width) / 256
     body = [*_ground(labels), '<g fill="none" stroke-linecap="round">']
@@ -68,7 +68,8 @@ def _line(arc: Arc, label: ArcLabel, unit: float) -> Iterator[str]:
     dash = f' stroke-dasharray="{3 * unit:.1f} {3 * unit:.1f}"' if label.probability < FADED else ""
     color = COLORS[KINDS[label.label]]
     says = f"{KINDS[label.label]}, probability {label.probability:.2f}"
-    yield f'<polyline points="{spots}" stroke="{color}" stroke-width="{1.4 * unit:.2f}"{dash}><title>{says}</title></polyline>'
+    look = f'stroke="{color}" stroke-width="{1.4 * unit:.2f}"{dash}'
+    yield f'<polyline points="{spots}" {look}><title>{says}</title></polyline>'
 
 
 def _sign(arc: Arc, label: ArcLabel, unit: float) -> Iterator[str]:
@@ -115,7 +116,8 @@ def _junction(x: float, y: float, told: JunctionLabel, unit: float) -> Iterator[
         return
     color = "#ffffff" if told.legal else "#ff60c0"
     says = ", ".join(f"{kind} {share:.2f}" for kind, share in told.probabilities.items())
-    yield f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{1.6 * unit:.2f}" fill="{color}"><title>{told.type}: {says}</title></circle>'
+    place = f'cx="{x:.2f}" cy="{y:.2f}" r="{1.6 * unit:.2f}"'
+    yield f'<circle {place} fill="{color}"><title>{told.type}: {says}</title></circle>'
     yield _text(x + 4 * unit, y - 3 * unit, "A" if told.type == "W" else told.type, color, 7 * unit)
 
 

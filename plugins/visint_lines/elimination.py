@@ -61,7 +61,8 @@ def count(unary: Array, factors: Sequence[Factor]) -> float:
 
 def _narrowed(unary: Array, factors: Sequence[Factor]) -> tuple[Array, list[int]]:
     """``unary`` with arcs fixed, those with most neighbours first, until no table is too wide."""
-    unary, fixed = unary.copy(), []
+    unary = unary.copy()
+    fixed: list[int] = []
     while True:
         free = [_without(f.arcs, fixed) for f in factors]
         order = _order(len(unary), free)

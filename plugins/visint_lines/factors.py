@@ -65,7 +65,7 @@ def _table(junction: Junction, arcs: tuple[int, ...], prior: Mapping[str, float]
 
 @cache
 def _close_by() -> frozenset[tuple[str, ...]]:
-    """Rows of a T with a curvature-L or a phantom so near on its bar that both are one junction in the image."""
+    """Rows of a T with a curvature-L or a phantom so near on its bar that the image shows one junction."""
     changes = legal("C") | legal("P")
     onward: dict[str, set[str]] = {label: {q for p, q in changes if FLIP[p] == label} for label in LABELS}
     bars = legal("T")

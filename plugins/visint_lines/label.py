@@ -79,7 +79,7 @@ class Label(Module[LabelParams, LabelInputs, LabelOutputs]):
 
     Priors of arcs are Table 4.3's and of junctions Table 4.4's, as corrected; what lines may meet is the
     catalogue's (Malik 1987, DOI 10.1007/BF00128527). The exact search is over directed labels with soft types:
-    one misread junction then costs one row, not the drawing. Which side occludes follows from the sign of the gap,
+    one misread junction then costs one row, not the drawing. Which side occludes follows from the gap's sign,
     and next to the background from the floating preference (Trytten).
 
     Assumes opaque, piecewise smooth bodies with trihedral corners seen from a general viewpoint; four lines and

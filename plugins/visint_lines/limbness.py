@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 
@@ -68,7 +69,7 @@ def _bent(known: Array, offset: Array) -> Array:
 
 
 def _at_boundary(slant: Array, known: Array, offset: Array) -> Array:
-    """The angle at the boundary itself, by the samples' trend: on a round surface its sine is linear in distance."""
+    """The angle at the boundary itself, by the trend: on a round surface its sine is linear in distance."""
     weight = known.astype(np.float64)
     sine = np.where(known, np.sin(slant), 0)
     total = np.maximum(weight.sum(axis=-1), 1)
@@ -102,14 +103,15 @@ def _critical(count: int, size: float) -> float:
     if count < FEWEST:
         return -2.0
     t = float(stdtrit(count - 2, size))
-    return t / (count - 2 + t * t) ** 0.5
+    return float(t / (count - 2 + t * t) ** 0.5)
 
 
 def limb_runs(passed: Array, asked: Array, closed: bool, blur: float = 0.0) -> list[tuple[int, int, bool]]:
     """(first, behind the last, whether limb) of the runs into which points fall, bool (N,), along a line.
 
-    In blurred depth a change has a higher price. Points that were not asked go with their neighbours. The cheapest explanation by limb and other stretches, each change having its price. On a closed line the
-    first run may begin anywhere; then its last index lies beyond N.
+    Points that were not asked go with their neighbours. The cheapest explanation by limb and other stretches,
+    each change having its price, a higher one in blurred depth. On a closed line the first run may begin
+    anywhere; then its last index lies beyond N.
     """
     count = len(passed)
     if count == 0:
@@ -120,12 +122,10 @@ def limb_runs(passed: Array, asked: Array, closed: bool, blur: float = 0.0) -> l
     cuts = np.flatnonzero(np.diff(states.astype(np.int8))) + 1
     if not closed or not len(cuts):
         edges = [0, *cuts.tolist(), count]
-        return [(a, b, bool(states[a])) for a, b in zip(edges, edges[1:], strict=False)]
-    if states[0] == states[-1]:  # the run across the seam is one
-        edges = [*cuts.tolist(), int(cuts[0]) + count]
-    else:
-        edges = [0, *cuts.tolist(), count]
-    return [(a, b, bool(states[a % count])) for a, b in zip(edges, edges[1:], strict=False)]
+        return [(a, b, bool(states[a])) for a, b in pairwise(edges)]
+    seamless = states[0] == states[-1]  # the run across the seam is one
+    edges = [*cuts.tolist(), int(cuts[0]) + count] if seamless else [0, *cuts.tolist(), count]
+    return [(a, b, bool(states[a % count])) for a, b in pairwise(edges)]
 
 
 def _cheapest(cost: Array, change: float) -> Array:

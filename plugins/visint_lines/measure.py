@@ -32,12 +32,12 @@ class FeaturesParams(Params):
     Parameters
     ----------
     across
-        Pixels of the level to either side of a line within which depth is extrapolated to it. More averages more
-        noise out and believes longer that faces are parabolas.
+        Samples to either side of a line from which depth is extrapolated to it. More averages more noise out
+        and believes longer that faces are parabolas.
     blur
         Full-size pixels to either side of a line within which depth is not to be believed, because it was
-        smoothed across, or matched where one view sees nothing. 0 suits range images, 6 stereo. More sees less of
-        small faces.
+        smoothed across, or matched where one view sees nothing. 0 suits range images, 5 stereo. More sees less
+        of small faces.
     window
         Pixels of the level to each side of the square in which a plane is fitted for a normal.
     samples
@@ -69,7 +69,7 @@ class FeaturesInputs(Ports):
 
 
 class FeaturesOutputs(Ports):
-    """The diagram with the features of Table 4.2 in its arcs, cut at ends of limbs; limbness along its lines."""
+    """The diagram with Table 4.2's features in its arcs, cut at ends of limbs; limbness along its lines."""
 
     diagram: Diagram
     limbness: Confidence[Array, "H W"]
@@ -100,7 +100,7 @@ class Features(Module[FeaturesParams, FeaturesInputs, FeaturesOutputs]):
         sections = cut(inputs.diagram, seen, _offsets(max(p.across, p.samples), blur))
         ctx.check()
         found = _observed(sections, p, blur)
-        diagram, owner = split(inputs.diagram, sections.arc, sections.index, found.passed, found.asked, blur)
+        diagram, owner = split(inputs.diagram, sections.arc, sections.point, found.passed, found.asked, blur)
         diagram = replace(
             diagram,
             arcs=tuple(
@@ -136,7 +136,7 @@ def _observed(sections: Sections, p: FeaturesParams, blur: float) -> _Observed:
     behind = np.stack([told.gap < 0, told.gap > 0], axis=-1) & told.seen[:, None]
     limb &= ~behind  # a limb hides what is behind it
     nearer = np.where(told.seen, asked[np.arange(len(asked)), (told.gap < 0).astype(int)], asked.any(axis=1))
-    return _Observed(told, limb, asked, limb.any(axis=1), nearer, OFF * (1 + blur / 4))
+    return _Observed(told, limb, asked, np.asarray(limb.any(axis=1)), nearer, OFF * (1 + blur / 4))
 
 
 def _summed(found: _Observed, mine: Array) -> Measures:

@@ -17,6 +17,8 @@ FLAT = {"+": 0.25, "-": 0.15, ">": 0.2, "<": 0.2, ">>": 0.05, "<<": 0.05, "x": 0
 """What is believed of an arc of which depth says nothing."""
 FAR = 1e4
 """A gap, in pixels, that stands for one to where nothing is known."""
+BLUNTEST = radians(167)
+"""The angle from which on two lines that meet in a corner are one: corners have been told from bends before."""
 BENT_C = 0.4
 """How well a curvature-L may pass for bent: below the window of the corners it looks like one."""
 TOUCH = 0.1
@@ -51,8 +53,8 @@ def sigmoid(x: float, slope: float, at: float, spread: float = 0.0) -> float:
 def arc_prior(measures: Measures | None, background: str, floating: float, at: Thresholds) -> Array:
     """(7,) probabilities of :data:`LABELS`, walking from start to end.
 
-    Table 4.3 with angles in degrees, creases gated by the gap, and the direction of what occludes from the gap's
-    sign: the nearer side is the surface's.
+    Table 4.3 with angles in degrees, creases gated by the gap, and the direction of what occludes from the
+    gap's sign: the nearer side is the surface's.
 
     Parameters
     ----------
@@ -92,7 +94,7 @@ def _from_depth(m: Measures, at: Thresholds) -> Array:
 
 
 def type_prior(diagram: Diagram, junction: Junction) -> dict[str, float]:
-    """Probabilities of the types of a junction: Table 4.4 as corrected; empty where the number of lines allows any.
+    """Probabilities of the types of a junction: Table 4.4 as corrected; empty where nothing is constrained.
 
     A junction at the frame is where a line leaves the image, not the scene.
     """
@@ -106,13 +108,17 @@ def type_prior(diagram: Diagram, junction: Junction) -> dict[str, float]:
         return {}
     if len(arcs) == 1:
         return {"E": 1.0}
-    told = _of_two(min(gaps), limb) if len(arcs) == 2 else _of_three(max(gaps), min(gaps), max(limb))
+    told = (
+        _of_two(min(gaps), limb, junction.smooth)
+        if len(arcs) == 2
+        else _of_three(max(gaps), min(gaps), max(limb))
+    )
     total = sum(told.values()) + FLOOR * len(told)
     return {kind: (share + FLOOR) / total for kind, share in told.items()}
 
 
-def _of_two(angle: float, limb: list[float]) -> dict[str, float]:
-    straight = sigmoid(angle, 25.0, radians(155))
+def _of_two(angle: float, limb: list[float], smooth: bool) -> dict[str, float]:
+    straight = max(sigmoid(angle, 25.0, BLUNTEST), 1 - FLOOR if smooth else 0.0)
     change = max(limb) - min(limb)
     return {
         "P": straight * (1 - change),

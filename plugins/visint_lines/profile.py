@@ -15,7 +15,7 @@ LEAST = 2
 STEEPEST = 5.0
 """Slope, pixels of depth a pixel, beyond which a face is seen edge-on."""
 STIFF = 4.0
-"""Weight against a bend that few samples would make up, pixels²: no more than about 0.05 a pixel comes of noise."""
+"""Weight against a bend that few samples would make up out of noise, pixels²."""
 
 
 class Profile(NamedTuple):

@@ -134,7 +134,7 @@ def _corner_epoch(corner: _Corner, arcs: Array) -> Array:
     if not corner.prior.size:
         return corner.prior
     support = sum((table @ arcs[a] for a, table in zip(corner.arcs, corner.agrees, strict=True)), 0.0)
-    return _moved(corner.prior[None], np.asarray(support)[None] / len(corner.arcs))[0]
+    return np.asarray(_moved(corner.prior[None], np.asarray(support)[None] / len(corner.arcs))[0])
 
 
 def _arc_epoch(corners: Sequence[_Corner], beliefs: Sequence[Array], prior: Array) -> Array:

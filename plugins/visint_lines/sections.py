@@ -36,7 +36,7 @@ class Sections(NamedTuple):
 
     Parameters
     ----------
-    arc, index
+    arc, point
         int (N,): which arc, and the number of its point the section goes through.
     across
         float (N, 2): unit vector, columns and rows, from the left to the right.
@@ -51,7 +51,7 @@ class Sections(NamedTuple):
     """
 
     arc: Array
-    index: Array
+    point: Array
     across: Array
     offset: Array
     depth: Array
@@ -113,7 +113,7 @@ def _stations(diagram: Diagram) -> tuple[Array, Array, Array, Array]:
 
 
 def _read(spots: Array, sides: Array, seen: Surfaces) -> tuple[Array, Array, Array, Array]:
-    """(nearness, its slopes, (u, v) from the principal point, whether on the side) at ``spots`` (N, 2, M, 2), NaN off the side."""
+    """(nearness, its slopes, place from the principal point, whether on the side) at ``spots`` (N, 2, M, 2)."""
     height, width = seen.labels.shape
     nearest = np.rint(spots).astype(np.int64)
     inside = ((nearest >= 0) & (nearest < np.array([width, height]))).all(axis=-1)

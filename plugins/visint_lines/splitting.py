@@ -33,6 +33,7 @@ def split(
     """
     spots = [(j.x, j.y) for j in diagram.junctions]
     frame = [j.frame for j in diagram.junctions]
+    smooth = [j.smooth for j in diagram.junctions]
     arcs: list[Arc] = []
     owner = np.empty(len(arc_of), dtype=np.int64)
     for number, arc in enumerate(diagram.arcs):
@@ -42,9 +43,10 @@ def split(
         arcs += _between(arc, cuts, len(spots))
         spots += [(float(x), float(y)) for x, y in arc.points[cuts]]
         frame += [False] * len(cuts)
+        smooth += [True] * len(cuts)
     angles = [(0.0, 0.0) if a.closed else (departure(a.points), departure(a.points[::-1])) for a in arcs]
     places = np.array(spots, dtype=np.float64).reshape(-1, 2)
-    return assembled(diagram.size, places, arcs, angles, np.array(frame, dtype=bool)), owner
+    return assembled(diagram.size, places, arcs, angles, np.array(frame, bool), np.array(smooth, bool)), owner
 
 
 def _cuts(arc: Arc, index: Array, runs: list[tuple[int, int, bool]]) -> list[int]:

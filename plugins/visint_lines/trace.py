@@ -80,7 +80,7 @@ def _walked(skeleton: Array) -> list[tuple[Array, bool]]:
 
 
 def _pruned(edges: Array, spur: float) -> Array:
-    """The skeleton without chains shorter than ``spur`` that end at a branch on one side and loose on the other."""
+    """The skeleton without chains shorter than ``spur`` that hang loose from a branch."""
     from visint_lines import _kernels
 
     skeleton = np.ascontiguousarray(_kernels.thinned(edges))

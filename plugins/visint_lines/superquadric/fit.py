@@ -17,7 +17,7 @@ LONG, SHORT = 60, 15
 """Steps of the two."""
 SMALLEST = 1e-3
 """Of its points' extent, the least half-axis."""
-SILENT = 0.15
+SILENT = 0.04
 """How strongly rays that miss the body repel it, beside a point on it."""
 
 
@@ -63,7 +63,8 @@ def fitted(points: Array, outline: Array) -> Fit | None:
 
 
 def _some(points: Array, most: int) -> Array:
-    return points[np.linspace(0, len(points) - 1, min(most, len(points))).astype(int)]
+    few = np.linspace(0, len(points) - 1, min(most, len(points))).astype(int)
+    return np.asarray(points[few])
 
 
 def _starts(points: Array, scale: float) -> list[Superquadric]:
@@ -79,8 +80,7 @@ def _starts(points: Array, scale: float) -> list[Superquadric]:
         frame[:, 0] *= np.sign(np.linalg.det(frame))
         place = centre + 0.6 * float(np.median(half)) * sight
         size = np.maximum(half[order], 0.5 * float(np.median(half)))
-        for roundness in ((1.0, 1.0), (0.3, 1.0)):
-            starts.append(_made(size, roundness, _vector_of(frame), place))
+        starts += [_made(size, bent, _vector_of(frame), place) for bent in ((1.0, 1.0), (0.3, 1.0))]
     return starts
 
 

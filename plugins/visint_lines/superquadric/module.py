@@ -38,8 +38,8 @@ class SuperquadricParams(Params):
     smallest
         Area in full-size pixels below which a region gets no fit. More leaves small parts out.
     margin
-        Full-size pixels next to a region's outline that take no part: depth there is least sure. More trusts the
-        outline for the body's extent.
+        Full-size pixels next to a region's outline that take no part: depth there is least sure. More trusts
+        the outline for the body's extent.
     background
         Whether the region that holds most of the image's frame gets a fit too.
     most
@@ -53,7 +53,7 @@ class SuperquadricParams(Params):
 
 
 class SuperquadricInputs(Ports):
-    """Regions, labels from 1, one for each body or part; depth; and the image that the fits are drawn over."""
+    """Regions, labels from 1, one a body or part; depth; and the image that the fits are drawn over."""
 
     regions: Regions[Array, "H W"]
     depth: Depth[Array, "H W"]
@@ -75,11 +75,11 @@ class SuperquadricOutputs(Ports):
 class SuperquadricFit(Module[SuperquadricParams, SuperquadricInputs, SuperquadricOutputs]):
     """Fits a superquadric to the depth of each region: size, roundness, pose (Figs. 4.16 and 5.24).
 
-    Least squares over the radial distance (Solina and Bajcsy 1990, DOI 10.1109/34.44401) from several starts; rays
-    just outside the region's outline keep the hidden half from growing where the background lies around it.
+    Least squares over the radial distance (Solina and Bajcsy 1990, DOI 10.1109/34.44401) from several starts;
+    rays just outside the region's outline keep the hidden half from growing where background lies around it.
 
-    Assumes one convex symmetric body a region. The hidden half follows from symmetry; the far side of a box that
-    shows one face is not to be known.
+    Assumes one convex symmetric body a region. The hidden half follows from symmetry; the far side of a box
+    that shows one face is not to be known.
     """
 
     name = "superquadric"

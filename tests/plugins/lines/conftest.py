@@ -66,8 +66,10 @@ def scene(seed, size=256, marks=""):
 
 
 def marked(truth):
-    """The true regions, each cut where its albedo jumps: a drawing with the marks drawn in."""
+    """The true regions of the things, each cut where its albedo jumps: a drawing with the marks drawn in."""
     tone = np.unique(truth.albedo.round(3), return_inverse=True)[1].reshape(truth.albedo.shape)
+    frame = np.concatenate([truth.regions[0], truth.regions[-1], truth.regions[:, 0], truth.regions[:, -1]])
+    tone = np.where(truth.regions == np.bincount(frame).argmax(), 0, tone)
     return (truth.regions * (int(tone.max()) + 1) + tone + 1).astype(np.int32)
 
 

@@ -90,7 +90,7 @@ def cone():
 
 TYPES = {
     "cube": "W L W L W L Y",
-    "block": "W W W W W W L W W L L".split(),
+    "block": ["W", "W", "W", "W", "W", "W", "L", "W", "W", "L", "L"],
     "house": "",
     "cylinder": "R R C C",
     "cone": "L C C",

@@ -21,7 +21,7 @@ def edge(axis, sign):
 
 
 def around(filled, axis, sign):
-    """The four octants around half an axis, in order round it: (directions of the two other axes, filled)."""
+    """The four octants around half an axis, in order round it, each with whether it is filled."""
     one, two = (axis + 1) % 3, (axis + 2) % 3
     found = []
     for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
@@ -54,7 +54,7 @@ def manifold(filled, axis, sign):
 
 
 def seen(filled, view):
-    """((angle, label), ...) of the visible edges of a corner seen from direction ``view``, counter-clockwise."""
+    """((angle, label), ...) of a corner's visible edges from direction ``view``, counter-clockwise."""
     eye = tuple(int(s) for s in np.sign(view))
     if filled[eye]:
         return None
@@ -125,7 +125,7 @@ def test_polyhedral_rows_are_what_octants_show():
 
 
 def test_tangent_rows_follow_from_occlusion():
-    """The bar hides the stem: it is an edge or a limb of the thing on the far side, the stem can be any line."""
+    """The bar hides the stem: an edge or a limb of the thing on the far side; the stem can be any line."""
     stems = [label for label in LABELS if label != "x"]
     assert legal("T") == {(bar, stem, FLIP[bar]) for bar in (">", ">>") for stem in stems}
     polyhedral = [row for row in legal("T") if not any(len(label) == 2 for label in row)]

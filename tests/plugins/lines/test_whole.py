@@ -1,0 +1,155 @@
+"""Scenes of the lab from label map to labels, alone and as a graph; figures of the documentation."""
+
+from __future__ import annotations
+
+import json
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+
+import visint
+from visint.fields import BoundaryKind
+from visint.module import Context
+from visint_lines.catalogue import KINDS
+from visint_lines.label import Label, LabelInputs, LabelParams
+from visint_lines.measure import Features, FeaturesInputs, FeaturesParams
+from visint_lines.painting import pixels_of
+from visint_lines.parse import Parse, ParseInputs
+
+HERE = Context()
+UNSEEN = range(30)  # run once with the parameters as they are; those were chosen on 1000 to 1041
+NUMBERS = {"limb": 1, "occluding": 2, "convex": 3, "concave": 4, "mark": 5}
+GRAPH = """
+visint: 1
+name: drawing
+inputs: {image: Image, regions: Regions, depth: Depth, camera: Camera}
+nodes:
+  parse: {uses: lines.parse, in: {regions: inputs.regions}}
+  features:
+    uses: lines.features
+    in: {diagram: parse.diagram, regions: parse.regions, depth: inputs.depth, camera: inputs.camera}
+  label: {uses: lines.label, in: {diagram: features.diagram, image: inputs.image}}
+outputs: {labels: label.labels, kinds: label.kinds, limbs: label.limbs}
+"""
+
+
+def interpreted(regions, depth, camera, image=None, blur=0.0, **params):
+    drawing = Parse().run(ParseInputs(regions=regions), HERE)
+    given = FeaturesInputs(diagram=drawing.diagram, regions=drawing.regions, depth=depth, camera=camera)
+    measured = Features(FeaturesParams(blur=blur)).run(given, HERE)
+    return Label(LabelParams(**params)).run(LabelInputs(diagram=measured.diagram, image=image), HERE)
+
+
+def true_edges(truth):
+    """The lab's edges; a plane face seen at a low angle has an edge there, and no limb."""
+    edges = truth.edges.copy()
+    for label in np.unique(truth.regions):
+        normals = truth.normals[truth.regions == label]
+        if np.isfinite(normals).all() and np.linalg.norm(normals - normals.mean(axis=0), axis=1).max() < 1e-3:
+            edges[(edges == 1) & (truth.regions == label)] = 2
+    return edges
+
+
+def true_kinds(diagram, edges):
+    """What most true edge pixels near each arc are; 0 where there is none."""
+    from scipy.ndimage import distance_transform_edt
+
+    distance, nearest = distance_transform_edt(edges == 0, return_indices=True)
+    label = np.where(distance <= 2.5, edges[tuple(nearest)], 0)
+    found = []
+    for arc in diagram.arcs:
+        points = arc.points[2:-2] if len(arc.points) > 8 else arc.points
+        met = label[pixels_of(points, diagram.size)]
+        met = met[(met > 0) & (met < 6)]
+        found.append(int(np.bincount(met).argmax()) if len(met) else 0)
+    return np.array(found)
+
+
+def shares(pairs, blur=0.0, noise=0.0, **params):
+    """Share of arcs labelled right over scenes, with true depth or with noise of some pixels."""
+    right = []
+    for seed, pair in pairs:
+        rng = np.random.default_rng(seed)
+        depth = pair.truth.depth
+        depth = depth * (1 + noise / pair.camera.focal_length * rng.standard_normal(depth.shape))
+        labels = interpreted(
+            pair.truth.regions, depth.astype(np.float32), pair.camera, blur=blur, **params
+        ).labels
+        truth = true_kinds(labels.diagram, true_edges(pair.truth))
+        said = np.array([NUMBERS[KINDS[arc.label]] for arc in labels.arcs])
+        right += (said == truth)[truth > 0].tolist()
+    return float(np.mean(right))
+
+
+def test_a_few_scenes(lab):
+    """A torus and a box, a cylinder, an ellipsoid and more: nine of ten lines right."""
+    assert shares([(seed, lab(seed)) for seed in (1004, 1009, 1013, 1018)]) >= 0.9
+
+
+def test_a_ball_is_a_limb_and_a_box_has_none(lab):
+    ball, box = lab(1011), lab(1008)
+    kinds = interpreted(ball.truth.regions, ball.truth.depth, ball.camera).kinds
+    assert set(np.unique(kinds)) == {BoundaryKind.NONE, BoundaryKind.LIMB}
+    kinds = interpreted(box.truth.regions, box.truth.depth, box.camera).kinds
+    assert set(np.unique(kinds)) == {BoundaryKind.NONE, BoundaryKind.OCCLUDING, BoundaryKind.CONVEX}
+
+
+def test_as_a_graph_with_its_files(lab, tmp_path):
+    """Plain nodes; labels are written as JSON and as a picture, kinds as a map."""
+    pair = lab(1008)
+    truth = pair.truth
+    graph = tmp_path / "drawing.yaml"
+    graph.write_text(GRAPH)
+    result = visint.run(
+        visint.load(str(graph)), image=pair.left, regions=truth.regions, depth=truth.depth, camera=pair.camera
+    )
+    result.save(tmp_path / "out")
+    told = json.loads((tmp_path / "out/labels.json").read_text())
+    assert len(told["arcs"]) == 9
+    assert {arc["kind"] for arc in told["arcs"]} == {"occluding", "convex"}
+    assert sorted(junction["type"] for junction in told["junctions"]) == ["L", "L", "L", "W", "W", "W", "Y"]
+    for arc in told["arcs"]:
+        assert sum(arc["probabilities"].values()) == pytest.approx(1, abs=1e-2)
+    root = ET.fromstring((tmp_path / "out/labels.svg").read_text())
+    names = [element.tag.rpartition("}")[2] for element in root.iter()]
+    assert names.count("polyline") == 9
+    assert names.count("image") == 1
+    assert (tmp_path / "out/kinds.png").is_file()
+    assert "swatch convex" in (tmp_path / "out/report.html").read_text()
+
+
+@pytest.mark.parametrize("marks", ["checker", "two"])
+def test_marks_are_no_creases(marks):
+    """Lines between fields of a checker or two tones: nine of ten are not taken for creases."""
+    from importlib.util import module_from_spec, spec_from_file_location
+    from pathlib import Path
+
+    from visint_lab.render.rendering import render
+
+    spec = spec_from_file_location("scenes", Path(__file__).with_name("conftest.py"))
+    scenes = module_from_spec(spec)
+    spec.loader.exec_module(scenes)
+    said = []
+    for seed in (1000, 1002, 1009):
+        pair = render(scenes.scene(seed, 256, marks), 1)
+        labels = interpreted(scenes.marked(pair.truth), pair.truth.depth, pair.camera).labels
+        truth = true_kinds(labels.diagram, true_edges(pair.truth))
+        said += [KINDS[arc.label] for arc, kind in zip(labels.arcs, truth, strict=True) if kind == 5]
+    assert len(said) > 3
+    assert np.mean([kind in ("convex", "concave") for kind in said]) <= 0.1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("noise", "least"), [(0.0, 0.93), (1.0, 0.92)])
+def test_thirty_unseen_scenes(lab, noise, least):
+    """The figure of the documentation. The aim was 97 %."""
+    assert shares([(seed, lab(seed)) for seed in UNSEEN], noise=noise) >= least
+
+
+def test_nothing_to_see():
+    """One region: no lines, empty maps, sound files."""
+    regions = np.ones((12, 9), np.int32)
+    found = interpreted(regions, np.full((12, 9), np.nan, np.float32), None)
+    assert not found.labels.arcs
+    assert not found.kinds.any()
