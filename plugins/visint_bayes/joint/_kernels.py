@@ -22,7 +22,7 @@ def _outer(matrix, ys, xs, cs, n, weight):
 
 
 @njit(cache=True, nogil=True)
-def _slope(y, x, domain, across, down, ys, xs, cs, a, b):
+def _slope(y, x, across, down, ys, xs, cs, a, b):
     """The row of a·d_u + b·d_v at (y, x), central where both neighbours belong to it; its length."""
     n = 1
     ys[0], xs[0], cs[0] = y, x, 0.0
@@ -77,7 +77,7 @@ def assemble(domain, across, down, data, bend_x, bend_y, twist, rows, matrix):
                 cs[0], cs[1], cs[2], cs[3] = 1.0, -1.0, -1.0, 1.0
                 _outer(matrix, ys, xs, cs, 4, 2 * twist[y, x])
             if rows[y, x, 2] > 0:
-                n = _slope(y, x, domain, across, down, ys, xs, cs, rows[y, x, 0], rows[y, x, 1])
+                n = _slope(y, x, across, down, ys, xs, cs, rows[y, x, 0], rows[y, x, 1])
                 _outer(matrix, ys, xs, cs, n, rows[y, x, 2])
 
 
@@ -112,7 +112,7 @@ def add_slope_terms(domain, across, down, rows, wanted, out):
         for x in range(width):
             if not domain[y, x] or not rows[y, x, 2] > 0:
                 continue
-            n = _slope(y, x, domain, across, down, ys, xs, cs, rows[y, x, 0], rows[y, x, 1])
+            n = _slope(y, x, across, down, ys, xs, cs, rows[y, x, 0], rows[y, x, 1])
             for a in range(n):
                 out[ys[a], xs[a]] += rows[y, x, 2] * cs[a] * wanted[y, x]
 
@@ -135,7 +135,7 @@ def bends(domain, across, down, field, out):
 
 
 @njit(cache=True, nogil=True)
-def add_bend_terms(domain, across, down, bend_x, bend_y, twist, bent, out):
+def add_bend_terms(domain, bend_x, bend_y, twist, bent, out):
     """Adds the gradient (half of it) of the plate terms at a field with second differences ``bent``."""
     height, width = domain.shape
     for y in range(height):
@@ -162,7 +162,7 @@ def add_bend_terms(domain, across, down, bend_x, bend_y, twist, bent, out):
 
 @njit(cache=True, nogil=True)
 def packed(matrix, out):
-    """The rows of a matrix whose couplings reach no further than two steps, (H + 4, W + 4, 13) with a margin."""
+    """The rows of a matrix whose couplings reach two steps at most, (H + 4, W + 4, 13) with a margin."""
     height, width = matrix.shape[:2]
     for y in range(height):
         for x in range(width):

@@ -58,7 +58,7 @@ def blended(pair: Pair, amplitude: float = 1.0) -> Blend:
 
 
 def _with_hidden(surface: Array, pool: Pool) -> Array:
-    """What the right view does not see is taken from brightness where one albedo explains it, else from stereo."""
+    """What the right view does not see follows brightness where one albedo explains it, else stereo."""
     import cv2
 
     setting, found = pool.setting, pool.reflectance
@@ -66,7 +66,7 @@ def _with_hidden(surface: Array, pool: Pool) -> Array:
     filling = pool.surfaces.get("round", setting.stereo) if one else setting.stereo
     strip = (setting.hidden & ~setting.adrift & ~setting.unseen).astype(np.float32)
     part = cv2.GaussianBlur(strip, (0, 0), max(setting.zoom, 0.7))
-    return surface + np.minimum(1.5 * part, 1) * (filling - surface)
+    return np.asarray(surface + np.minimum(1.5 * part, 1) * (filling - surface))
 
 
 def _enlarged(small: Blend, pair: Pair) -> Blend:

@@ -15,7 +15,7 @@ __all__ = ["Candidates"]
 
 
 class CandidatesInputs(Ports):
-    """A pair, what the matcher by descent found, complete, and perhaps a light; without a camera 53° of view."""
+    """A pair, its complete matched disparity, and perhaps a light; without a camera 53° of view."""
 
     left: Image[Array, "H W"]
     right: Image[Array, "H W"]

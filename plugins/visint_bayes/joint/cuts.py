@@ -29,7 +29,7 @@ def patches(calm: Array, mask: Array, noise: float, zoom: float) -> Array:
     bright = float(np.percentile(calm[mask], 95)) if mask.any() else 1.0
     core = cv2.erode(mask.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
     flat = core & (slope < max(STEEP * bright / zoom, 3 * noise))
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(flat.astype(np.uint8), connectivity=4)
+    _, labels, stats, _ = cv2.connectedComponentsWithStats(flat.astype(np.uint8), connectivity=4)
     keep = stats[:, cv2.CC_STAT_AREA] >= SMALLEST * mask.sum()
     keep[0] = False
     number = np.where(keep, np.cumsum(keep), 0)
@@ -71,7 +71,7 @@ def standing(mask: Array, labels: Array, surface: Array, zoom: float) -> Domain:
 
 
 def _steps(labels: Array, surface: Array) -> Array:
-    """float32 (H, W): the largest step to the right or lower neighbour of another label, 0 where there is none."""
+    """float32 (H, W): the largest step to the right or lower neighbour of another label, else 0."""
     step = np.zeros(surface.shape, np.float32)
     across = np.where(labels[:, :-1] != labels[:, 1:], np.abs(np.diff(surface, axis=1)) + 1e-6, 0)
     down = np.where(labels[:-1] != labels[1:], np.abs(np.diff(surface, axis=0)) + 1e-6, 0)

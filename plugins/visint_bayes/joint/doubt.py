@@ -21,13 +21,13 @@ FILE = "doubt.json"
 
 @dataclass(frozen=True, slots=True)
 class Doubt:
-    """Log sigma as a linear function of the signs: ``disparity`` and ``normals``, (F + 1,) each, constant last."""
+    """Log sigma as a linear function of the signs: of disparity and of normals, (F + 1,), constant last."""
 
     disparity: Array
     normals: Array
 
     def sigma(self, doubts: Array) -> tuple[Array, Array]:
-        """Sigma of disparity (px) and of the normals' angle (radians), float32 (H, W), from doubts (H, W, F)."""
+        """Sigma of disparity (px) and of the normals' angle (radians), float32 (H, W), from (H, W, F)."""
         found = [
             np.exp(np.clip(doubts @ one[:-1] + one[-1], -9, 5)).astype(np.float32)
             for one in (self.disparity, self.normals)
@@ -92,9 +92,9 @@ def _around(values: Array, reach: float) -> Array:
 
 
 def _facing(normals: Array) -> Array:
-    return np.clip(np.nan_to_num(-normals[..., 2], nan=0.05), 0.05, 1)
+    return np.asarray(np.clip(np.nan_to_num(-normals[..., 2], nan=0.05), 0.05, 1))
 
 
 def _rim(inside: Array, reach: float) -> Array:
     """1 at the rim of the mask, falling to 0 within some pixels."""
-    return np.clip(2 * (1 - _around(inside.astype(np.float32), reach)), 0, 1) * inside
+    return np.asarray(np.clip(2 * (1 - _around(inside.astype(np.float32), reach)), 0, 1) * inside)

@@ -154,7 +154,7 @@ def _linearised(setting: Setting, recipe: Recipe, surface: Array) -> _System:
     rows = np.ascontiguousarray(term.rows[box])
     _kernels.assemble(*joined, weight, *plate, rows, matrix)
     bending = np.zeros(pull.shape)
-    _kernels.add_bend_terms(*joined, *plate, bent, bending)
+    _kernels.add_bend_terms(domain.inside, *plate, bent, bending)
     _add(joined, SlopeTerm(rows, np.ascontiguousarray(term.wanted[box])), pull)
     return _System(box, domain, matrix, pull - bending)
 

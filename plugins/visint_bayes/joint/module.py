@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from pydantic import Field
 
-from visint.arrays import Array, Confidence, Depth, Disparity, Features, Image, Mask, Normals, Scalars, Sigma
+from visint.arrays import Array, Confidence, Depth, Disparity, Image, Mask, Normals, Scalars, Sigma
 from visint.fields import Camera, DepthEvidence, DisparityEvidence, IncidenceEvidence, Light
 from visint.fields.geometry import depth_from_disparity, disparity_evidence, normals_from_depth
 from visint.module import Context, Module, Params, Ports
@@ -34,9 +34,9 @@ class JointParams(Params):
 class JointInputs(Ports):
     """All evidence of the sweep, the images, and what the matcher by descent found, complete.
 
-    Brightness counts only in graphs that have a cue of incidence, and with a light; how bright surfaces are that
-    face it is found here, in classes, so that painted things have their shading too. Without ``matched`` and both
-    images nothing but the evidence itself counts; without a camera 53° of view.
+    Brightness counts only in graphs that have a cue of incidence, and with a light. How bright surfaces are
+    that face it is found here, in classes, so that painted things have their shading too. Without ``matched``
+    and both images nothing but the evidence itself counts; without a camera 53° of view.
     """
 
     disparity_evidence: tuple[DisparityEvidence, ...] = ()
@@ -83,14 +83,14 @@ class Joint(Module[JointParams, JointInputs, JointOutputs]):
 
     Before a void: a maximum a posteriori estimate of disparity. The photometric residual linearised at the
     current surface, n·l against brightness as a constraint on slopes, a robust thin plate that gives way at
-    creases, a weak anchor to the stereo; cut at depth edges that brightness shows and the surfaces on both sides
-    confirm; albedo in classes and highlights found on the way. Several minima under different trust in stereo
+    creases, a weak anchor to the stereo; cut at depth edges that brightness shows and the surfaces on both
+    sides confirm; albedo in classes and highlights found on the way. Several minima under different trust in stereo
     and brightness are blended with weights learned from signs that do not look at the truth: residuals in the
     view they were not fitted to, roughness, how far they differ. Without a void the last cue that speaks is
     taken: nothing is claimed of photographs beyond their evidence.
 
-    Solved by Gauss-Newton and conjugate gradients with a Galerkin multigrid, linear in pixels. Assumes one light,
-    Lambertian surfaces of few albedos but for highlights. The linearised data term follows section 5.3.2
+    Solved by Gauss-Newton and conjugate gradients with a Galerkin multigrid, linear in pixels. Assumes one
+    light, Lambertian surfaces of few albedos but for highlights. The linearised data term follows section 5.3.2
     (Eqs. 5.100 to 5.102), the plate W. E. L. Grimson, From Images to Surfaces, 1981.
     """
 

@@ -12,7 +12,7 @@ __all__ = ["pair_of"]
 
 
 def pair_of(images: tuple[Array, Array], matched: Array, camera: Camera, light: Light | None) -> Pair | None:
-    """The pair of the left and right image with the left view's matched disparity; None where there is no void."""
+    """The pair of two images with the left view's matched disparity; None where there is no void."""
     from visint_bayes.joint.void import foreground
 
     inside, inside_right = (foreground(image) for image in images)

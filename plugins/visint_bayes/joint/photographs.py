@@ -13,7 +13,7 @@ __all__ = ["preferred"]
 
 
 def preferred(evidence: Sequence[DisparityEvidence]) -> tuple[Array, Array, Array]:
-    """Disparity, sigma and reliability, float32 (H, W): the last that speaks at a pixel, NaN, NaN, 0 where none.
+    """Disparity, sigma and reliability, float32 (H, W): the last that speaks; NaN, NaN, 0 where none.
 
     A graph lists its cues from the coarsest to the one that knows most: a matcher that sees detail after one
     that smooths, planes after the matcher they were fitted to.

@@ -69,7 +69,7 @@ def views_of(images: tuple[Array, Array], masks: tuple[Array, Array], noise: flo
         masked_blur(GRADES * np.nan_to_num(one), two, blur) for one, two in zip(images, inside, strict=True)
     ]
     area = 4 * np.pi * blur**2
-    return Views(*smooth, *inside, 2 * (GRADES * noise) ** 2 / area + LIKENESS, area)
+    return Views(smooth[0], smooth[1], inside[0], inside[1], 2 * (GRADES * noise) ** 2 / area + LIKENESS, area)
 
 
 def data_term(views: Views, field: Array, gap: Array, spread: float = 3.0) -> DataTerm:

@@ -19,7 +19,7 @@ RECIPES = {
     "bright": Recipe(0.003, 1.0, turns=3),
     "round": Recipe(0.003, 1.0, slant=4.0, turns=3),
 }
-"""From stereo and smoothness alone to full belief in brightness; the first two without cuts inside the object."""
+"""From stereo and smoothness alone to full belief in brightness; the first two without cuts."""
 NAMES = tuple(RECIPES)
 
 

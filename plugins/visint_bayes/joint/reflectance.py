@@ -12,6 +12,8 @@ __all__ = ["Reflectance", "reflectance"]
 
 APART = 1.45
 """Albedos closer than this ratio are one."""
+LEAST = 0.12
+"""A class of albedo has at least this part of the pixels."""
 TOO_SPREAD = 0.3
 """Log albedo that spreads more about its classes holds more of them."""
 STEP = 0.02
@@ -92,24 +94,24 @@ def _modes(ratio: Array, weight: Array) -> Array:
             found.append(int(place))
         if len(found) == 3:
             break
-    return low + STEP * (np.sort(np.array(found)) + 0.5)
+    return np.asarray(low + STEP * (np.sort(np.array(found)) + 0.5))
 
 
 def _matte(levels: Array, ratio: Array, cosine: Array) -> Array:
-    """Without the classes seen only where the surface faces the light: those are highlights."""
+    """Without classes of few pixels, and without those only where the surface faces the light: highlights."""
     nearest = np.abs(ratio[:, None] - levels).argmin(axis=1)
-    steep = [
-        np.percentile(cosine[nearest == k], 10) < 0.85 if (nearest == k).any() else False
-        for k in range(len(levels))
-    ]
-    steep[0] = True
-    return levels[np.array(steep)]
+    keep = []
+    for k in range(len(levels)):
+        mine = cosine[nearest == k]
+        steep = k == 0 or (mine.size > 0 and float(np.percentile(mine, 10)) < 0.85)
+        keep.append(mine.size > LEAST * ratio.size and steep)
+    return np.asarray(levels[np.array(keep)] if any(keep) else levels[-1:])
 
 
 def _apart(density: Array, place: int, other: int) -> bool:
     low, high = min(place, other), max(place, other)
     valley = density[low : high + 1].min()
-    return (high - low) * STEP > np.log(APART) and valley < 0.6 * min(density[low], density[high])
+    return bool((high - low) * STEP > np.log(APART) and valley < 0.6 * min(density[low], density[high]))
 
 
 def _labels(brightness: Array, cosine: Array, mask: Array, levels: Array) -> Array:

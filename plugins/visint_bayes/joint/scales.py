@@ -25,7 +25,8 @@ def _mean(field: Array) -> Array:
     """Means of blocks of 2 x 2; odd sides are padded by their last row or column."""
     rows, columns = field.shape
     whole = np.pad(field, ((0, rows % 2), (0, columns % 2)), mode="edge")
-    return ((whole[::2, ::2] + whole[1::2, ::2] + whole[::2, 1::2] + whole[1::2, 1::2]) / 4).astype(np.float32)
+    total = whole[::2, ::2] + whole[1::2, ::2] + whole[::2, 1::2] + whole[1::2, 1::2]
+    return np.asarray(total / 4, np.float32)
 
 
 def enlarged(field: Array, inside: Array, size: tuple[int, int]) -> Array:
@@ -48,4 +49,4 @@ def _twice(field: Array, axis: int) -> Array:
     before, after = np.concatenate([field[:1], field[:-1]]), np.concatenate([field[1:], field[-1:]])
     out = np.empty((2 * len(field), *field.shape[1:]), field.dtype)
     out[::2], out[1::2] = 0.75 * field + 0.25 * before, 0.75 * field + 0.25 * after
-    return np.moveaxis(out, 0, axis)
+    return np.asarray(np.moveaxis(out, 0, axis))

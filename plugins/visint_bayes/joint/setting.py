@@ -9,8 +9,8 @@ import numpy as np
 from visint.arrays import Array
 from visint.fields import Camera, Light
 from visint_bayes.joint.brightness import Brightness
-from visint_bayes.joint.domain import Domain
 from visint_bayes.joint.cuts import cut_by, near_cuts, patches, standing
+from visint_bayes.joint.domain import Domain
 from visint_bayes.joint.energy import Recipe, Setting, minimum, slopes_of
 from visint_bayes.joint.noise import noise_inside
 from visint_bayes.joint.photometry import masked_blur, views_of
@@ -27,8 +27,8 @@ TOO_MUCH_SHINE = 0.35
 """Of the object: beyond, highlights are no highlights."""
 
 FIRM, FREE = 0.3, 0.003
-"""How firmly what the right view does not see is held to the stereo, px⁻²: freely where one albedo makes shading
-worth more there."""
+"""How firmly what the right view does not see is held to the stereo, px⁻²: freely where one albedo makes
+shading worth more there."""
 REACH = 10.0
 """How far from a depth edge stereo is not believed, px at 256 pixels."""
 

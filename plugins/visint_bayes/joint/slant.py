@@ -33,7 +33,7 @@ def normals_of_slopes(field: Array, slopes: Array, camera: Camera) -> Array:
     """Unit normals float32 (H, W, 3) facing the camera, of disparity (H, W) with slopes (H, W, 2) a pixel."""
     g = _gradient(field, slopes, camera)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return (-g / np.linalg.norm(g, axis=-1, keepdims=True)).astype(np.float32)
+        return np.asarray(-g / np.linalg.norm(g, axis=-1, keepdims=True), np.float32)
 
 
 def lighting(field: Array, slopes: Array, camera: Camera, light: Light) -> Lighting:

@@ -26,7 +26,7 @@ class SurfaceOutputs(Ports):
 class Surface(Module[Params, SurfaceInputs, SurfaceOutputs]):
     """Depth from disparity, Z = f B / (d + doffs), whether or not there is a calibration.
 
-    For maps that start from a matched surface (``start: {depth: surface.depth}``). Assumes nothing of the scene.
+    For maps that start from a matched surface (``start: {depth: surface.depth}``).
     """
 
     name = "surface"
