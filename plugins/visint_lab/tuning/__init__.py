@@ -1,1 +1,1 @@
-"""Learning parameters on training scenes: candidates' signs and errors, the choice fitted to them, parameters."""
+"""Learning on training scenes: candidates' signs and errors, the choice fitted to them, parameters."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from visint_lab.scenes.sets import OBJECTS
+from visint_lab.scenes.sets import OBJECTS, SCANS, SURFACES
 
-__all__ = ["CONDITIONS", "drawn"]
+__all__ = ["CONDITIONS", "OTHERS", "drawn", "with_others"]
 
 CONDITIONS = (
     "a/{}/lambertian",
@@ -28,3 +28,18 @@ def drawn(first: int, rounds: int) -> Iterator[tuple[str, int]]:
         scenes = (condition.format(thing) for condition in CONDITIONS for thing in OBJECTS)
         for number, name in enumerate(scenes, 1):
             yield name, first + 1000 * turn + number
+
+
+OTHERS = (
+    *(f"b/mozart/{surface}" for surface in SURFACES["mozart"]),
+    *(f"b/mozart/{surface}+10%" for surface in SURFACES["mozart"]),
+    *(f"range/{scan}" for scan in SCANS),
+    *(f"range/{scan}+2%" for scan in SCANS[:3]),
+)
+"""Surfaces that nothing is trained on; they need the data folder. With one round of primitives, 60 scenes."""
+
+
+def with_others(first: int) -> Iterator[tuple[str, int]]:
+    """One round of :func:`drawn` and the surfaces that nothing is trained on; only their noise has a seed."""
+    yield from drawn(first, 1)
+    yield from ((name, first + 500 + number) for number, name in enumerate(OTHERS))

@@ -57,7 +57,7 @@ def fitted(samples: Sequence[Sample], seed: int = 0) -> Fitted:
     guesses = np.empty((len(samples), 2, len(samples[0].signs)))
     for fold in range(FOLDS):
         model = _ridge([one for one, f in zip(samples, folds, strict=True) if f != fold])
-        for place in np.nonzero(folds == fold)[0]:
+        for place in np.nonzero(folds == fold)[0].tolist():
             guesses[place] = model.predicted(samples[place].signs)
     residual = np.array([_targets(one).T for one in samples]) - guesses
     sd = np.nanstd(residual, axis=0)

@@ -67,8 +67,8 @@ def _whole(system: str, result: visint.Result, rendering: Rendering) -> Reconstr
 
 
 def _verdict(names: tuple[str, str], own: Array, stereo: Array, covered: tuple[float, float]) -> Verdict:
-    gains = 100 * (1 - own / stereo)
-    return Verdict(*names, *(float(g) for g in gains), float(own[0] ** 0.5), float(own[1]), covered)
+    depth, shape, hidden = (100 * (1 - own / stereo)).tolist()
+    return Verdict(*names, depth, shape, hidden, float(own[0] ** 0.5), float(own[1]), covered)
 
 
 def _errors(found: Reconstruction, rendering: Rendering) -> Array:
@@ -79,7 +79,7 @@ def _errors(found: Reconstruction, rendering: Rendering) -> Array:
 
 
 def _covered(result: visint.Result, rendering: Rendering) -> tuple[float, float]:
-    """Parts of the errors of depth and of normals that lie within one stated sigma; NaN without such outputs."""
+    """Parts of the errors of depth and of normals within one stated sigma; NaN without such outputs."""
     if "depth_sigma" not in result or "normals_sigma" not in result:
         return float("nan"), float("nan")
     truth = rendering.truth
