@@ -109,7 +109,7 @@ def _apart(found: Photometry, relief: Relief) -> Array:
 
 
 def _agreed(apart: Array, labels: Array, count: int) -> Array:
-    """In [0, 1]: less where a pixel's normal lies 12° from the map's, or a region's in the mean; 0 from 30° and 25°.
+    """In [0, 1]: less where a normal lies 12° from the map's, or a region's in the mean; 0 from 30° and 25°.
 
     Where ways from several points meet, some pixels are wrong and their neighbours right.
     """
