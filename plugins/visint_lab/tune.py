@@ -28,8 +28,13 @@ HEAD = [
     "σ normals %",
 ]
 
+EXAMPLES = (
+    "Examples: visint tune stereo_sgm --param match.speckle=50,100,200 --out tuned;  "
+    "visint tune joint --choice --scenes 31000:1 --out tuned"
+)
 
-def command(
+
+def command(  # noqa: PLR0913, PLR0917 - the options of a command line are many, and typer reads them here
     graph: Annotated[str, typer.Argument(help="A graph's name or path.")],
     param: Annotated[
         list[str] | None, typer.Option(help="node.param=v1,v2,…: values to choose among; repeat for more.")
