@@ -88,10 +88,5 @@ def cone():
     return spots, lines, {0: "right", 1: "left", 2: "right"}, None
 
 
-TYPES = {
-    "cube": "W L W L W L Y",
-    "block": ["W", "W", "W", "W", "W", "W", "L", "W", "W", "L", "L"],
-    "house": "",
-    "cylinder": "R R C C",
-    "cone": "L C C",
-}
+TYPES = {"cylinder": "R R C C", "cone": "L C C"}
+"""Of curved bodies, whose junctions are known by their tangents."""
