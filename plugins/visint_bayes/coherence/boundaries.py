@@ -89,6 +89,8 @@ class CohereBoundaries(Module[CohereBoundariesParams, CohereBoundariesInputs, Co
         return CohereBoundariesOutputs(evidence=evidence, marks=marks)
 
     def _kept(self, inputs: CohereBoundariesInputs, said: Array, labels: Array, count: int) -> Array:
+        import cv2
+
         from visint_bayes.coherence import _kernels
 
         seen, step, bend, trust = np.zeros((4, count, count))
@@ -97,6 +99,8 @@ class CohereBoundaries(Module[CohereBoundariesParams, CohereBoundariesInputs, Co
         with np.errstate(divide="ignore", invalid="ignore"):
             step, bend, trust = (np.where(seen > 0, each / seen, 0) for each in (step, bend, trust))
         smooth = (np.abs(step) < self.params.jump) & (np.abs(bend) < self.params.bend)
-        kept = np.zeros_like(said)
+        kept, closed = np.zeros_like(said), np.zeros_like(said)
         _kernels.still_between(said, labels, smooth & (trust > self.params.trusted), kept)
-        return kept
+        _, left = cv2.connectedComponents((~kept).astype(np.uint8), connectivity=4)
+        _kernels.still_between(kept, left, np.zeros((left.max() + 1,) * 2, dtype=bool), closed)
+        return closed

@@ -9,7 +9,7 @@ from visint.arrays import Array, Boundaries, Confidence, Depth, Disparity
 from visint.fields import Camera, DepthEvidence, DisparityEvidence
 from visint.fields.geometry import depth_evidence, disparity_evidence, disparity_from_depth
 from visint.module import Context, Module, Params, Ports
-from visint_bayes.coherence.table import Opinions, Verdict, validated
+from visint_bayes.coherence.table import REJECTED, Opinions, Verdict, validated
 
 __all__ = ["CohereDepth", "CohereDisparity"]
 
@@ -57,7 +57,8 @@ class CohereDisparity(Module[CohereDisparityParams, CohereDisparityInputs, Coher
     Eqs. 5.30 and 5.31 in their corrected reading: the positions that matches lead back to are turned into
     disparities; where their variance exceeds ρ the map's value stands; where it does not with the map's value
     among them, the median of all; else the median of the neighbours. Neighbours across a boundary are not
-    asked. Reliability is the mean of the neighbours' times β.
+    asked. Reliability is the mean of the neighbours' times β, and falls the further their matches lead back from
+    the pixel itself: behind an edge that one view alone sees past, neighbours agree on the wrong surface.
     """
 
     name = "cohere_disparity"
@@ -68,7 +69,11 @@ class CohereDisparity(Module[CohereDisparityParams, CohereDisparityInputs, Coher
         ctx.check()
         verdict = _judged(inputs.evidence, inputs, self.params.rho)
         ctx.assumed("coherence", verdict.agreement >= 0.5)
-        found = DisparityEvidence.of(verdict.value[..., 0], verdict.sigma, verdict.trust)
+        value = verdict.value[..., 0]
+        gap = np.nan_to_num(value - inputs.evidence.value, nan=0.0)
+        far = np.where(verdict.row == REJECTED, np.float32(0), gap * gap)
+        trust = verdict.trust / (1 + far / np.float32(self.params.rho))
+        found = DisparityEvidence.of(value, verdict.sigma, trust)
         return CohereDisparityOutputs(evidence=found, beta=verdict.beta, kappa=verdict.kappa)
 
 

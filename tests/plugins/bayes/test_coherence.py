@@ -130,8 +130,11 @@ def test_matches_that_lead_back_agree():
     given = {"evidence": DisparityEvidence.of(wrong, 0.1, 0.8), "back": field, "disparity": field}
     found = CohereDisparity().run(CohereDisparityInputs(**given), Context())
     assert (found.evidence.value[:, 5:] == 3).all()
-    assert np.allclose(found.evidence.reliability[1:-1, 5:-1], 0.8)
     assert found.beta[4, 10] == 1
+    assert np.isclose(found.evidence.reliability[4, 10], 0.8 / (1 + 6**2 / 4))  # they lead back six pixels off
+    same = found.evidence.reliability[1:-1, 5:-1].copy()
+    same[3, 5] = 0.8
+    assert np.allclose(same, 0.8)
 
 
 def test_where_the_other_view_disagrees_the_map_stands():

@@ -50,6 +50,7 @@ def test_the_graph_is_that_of_figure_5_13():
     assert spec.hub.start["depth"] == "plane"
     assert spec.hub.start["boundaries"] in (None, "none")
     assert set(spec.controls) == {"shading", "texture"}
+    assert spec.hub.spokes["stereo"].with_ == {"iterations": 1}
 
 
 def test_integration_beats_the_same_stereo(sphere):
