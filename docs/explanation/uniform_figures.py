@@ -1,9 +1,9 @@
 """Draws the figures of the page on the uniform hub beside this file.
 
 Run from the project's root: ``python docs/explanation/uniform_figures.py``. ``uniform_one.svg`` and
-``uniform_hub.svg`` are what ``visint show --html`` draws: one module and the map (Fig. 5.4 of the dissertation),
-and the sequence of modules inside its levels (Figs. 5.5 and 5.6). ``uniform_sphere.png``: the left view, depth of
-stereo alone and of the hub, the boundaries that are left, and the map's confidence.
+``uniform_hub.svg`` are what ``visint show --html`` draws: one module and the map (Fig. 5.4 of the
+dissertation), and the sequence of modules inside its levels (Figs. 5.5 and 5.6). ``uniform_sphere.png``: the
+left view, depth of stereo alone and of the hub, the boundaries that are left, and the map's confidence.
 """
 
 from __future__ import annotations

@@ -57,8 +57,8 @@ class CohereDisparity(Module[CohereDisparityParams, CohereDisparityInputs, Coher
     Eqs. 5.30 and 5.31 in their corrected reading: the positions that matches lead back to are turned into
     disparities; where their variance exceeds ρ the map's value stands; where it does not with the map's value
     among them, the median of all; else the median of the neighbours. Neighbours across a boundary are not
-    asked. Reliability is the mean of the neighbours' times β, and falls the further their matches lead back from
-    the pixel itself: behind an edge that one view alone sees past, neighbours agree on the wrong surface.
+    asked. Reliability is the mean of the neighbours' times β, and falls the further their matches lead back
+    from the pixel itself: behind an edge that one view alone sees past, neighbours agree on the wrong surface.
     """
 
     name = "cohere_disparity"
