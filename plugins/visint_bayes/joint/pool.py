@@ -21,6 +21,8 @@ RECIPES = {
 }
 """From stereo and smoothness alone to full belief in brightness; the first two without cuts."""
 NAMES = tuple(RECIPES)
+TEXTURED = 0.3
+"""Log brightness that spreads more about one albedo is texture: its edges are no depth edges."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +43,7 @@ def candidates(pair: Pair, amplitude: float = 1.0) -> Pool:
     if setting.unseen.any():
         first = minimum(setting, RECIPES["plate"], first)
     cut, begin = setting, first
-    if found is None or len(found.albedo) == 1:
+    if found is None or (len(found.albedo) == 1 and found.misfit < TEXTURED):
         cut, begin = with_cuts(setting, pair, noise, first)
     surfaces = {"plate": first, "loose": minimum(cut, RECIPES["loose"], begin)}
     if setting.brightness is not None:

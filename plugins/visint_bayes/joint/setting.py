@@ -29,6 +29,8 @@ TOO_MUCH_SHINE = 0.35
 FIRM, FREE = 0.3, 0.003
 """How firmly what the right view does not see is held to the stereo, px⁻²: freely where one albedo makes
 shading worth more there."""
+MOST = 6
+"""More patches than this are texture, not surfaces."""
 REACH = 10.0
 """How far from a depth edge stereo is not believed, px at 256 pixels."""
 
@@ -112,7 +114,7 @@ def with_cuts(setting: Setting, pair: Pair, noise: float, surface: Array) -> tup
     blur = max(blur_for(noise), 1.0)
     calm = masked_blur(np.nan_to_num(pair.left), pair.inside.astype(np.float32), blur)
     labels = patches(calm, pair.inside, noise / (3.54 * blur), setting.zoom)
-    if labels.max() < 2:
+    if not 2 <= labels.max() <= MOST:
         return setting, surface
     apart = cut_by(pair.inside, labels)
     near = near_cuts(apart, REACH * setting.zoom)
