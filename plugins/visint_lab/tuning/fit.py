@@ -15,9 +15,11 @@ __all__ = ["Fitted", "Model", "bound", "fitted"]
 
 FOLDS = 8
 PENALTY, OWN_PENALTY = 10.0, 30.0
-CAUTIONS, WARMTHS = (0.0, 0.5, 1.0), (0.15, 0.3, 0.45)
-HARM = 10.0
-"""How much a scene made worse counts against the median gain, per cent of the median a scene in a hundred."""
+CAUTIONS, WARMTHS = (0.0, 0.5, 0.75, 1.0, 1.25), (0.1, 0.15, 0.3)
+HARM = 2.0
+"""What each scene in a hundred that is made worse costs, in points of the medians."""
+WORST = 0.2
+"""What each point costs that the worst scene loses."""
 
 
 class Model(NamedTuple):
@@ -69,7 +71,7 @@ def fitted(samples: Sequence[Sample], seed: int = 0) -> Fitted:
 
 def _worth(gains: Array) -> float:
     harmed = 100 * float((gains < -2).any(axis=1).mean())
-    return float(np.median(gains, axis=0).sum()) - HARM * harmed / 10
+    return float(np.median(gains, axis=0).sum() + WORST * gains.min()) - HARM * harmed
 
 
 def bound(samples: Sequence[Sample], guesses: Array, risk: Array, key: tuple[float, float]) -> Array:
