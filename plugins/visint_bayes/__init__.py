@@ -31,7 +31,8 @@ def visint_modules() -> list[Any]:
 
     coherence = [CohereBoundaries, CohereDepth, CohereDisparity, CohereNormals]
     strategies = [DescriptionLength, FaultLattice, Game, Mrf, Relaxation]
-    return [*coherence, *strategies, Boundaries, Candidates, Depth, Gradient, Joint, Pairwise, Pointwise, Surface]
+    estimates = [Candidates, Joint, Surface]
+    return [*coherence, *strategies, *estimates, Boundaries, Depth, Gradient, Pairwise, Pointwise]
 
 
 @hookimpl
