@@ -1,8 +1,8 @@
 """Draws the figure of the joint page.
 
 Run from the project's root: ``python docs/explanation/joint_figures.py``. Rows are scenes of training seeds;
-columns the left image, and the error of disparity (blue nearer, red farther, full at 2 px) of the stereo alone, of
-the joint estimate without shading's amplitude, and of the joint estimate; last the sigma it states, to 1 px.
+columns the left image, and the error of disparity (blue too near, red too far, full at 2 px) of the stereo
+alone, of the joint estimate without shading's amplitude, and of the joint estimate; last the sigma it states.
 """
 
 from __future__ import annotations
@@ -58,7 +58,9 @@ def row(name, seed):
         panels.append(signed(truth.disparity - found["disparity"], inside))
     fb = pair.camera.focal_length * pair.camera.baseline
     sigma = found["depth_sigma"] * fb / found["depth"] ** 2
-    panels.append(np.repeat(np.where(inside, np.clip(np.nan_to_num(sigma, nan=1), 0, 1), 0.75)[..., None], 3, -1))
+    panels.append(
+        np.repeat(np.where(inside, np.clip(np.nan_to_num(sigma, nan=1), 0, 1), 0.75)[..., None], 3, -1)
+    )
     return np.concatenate([square(panel, inside) for panel in panels], axis=1)
 
 

@@ -84,10 +84,10 @@ class Joint(Module[JointParams, JointInputs, JointOutputs]):
     Before a void: a maximum a posteriori estimate of disparity. The photometric residual linearised at the
     current surface, n·l against brightness as a constraint on slopes, a robust thin plate that gives way at
     creases, a weak anchor to the stereo; cut at depth edges that brightness shows and the surfaces on both
-    sides confirm; albedo in classes and highlights found on the way. Several minima under different trust in stereo
-    and brightness are blended with weights learned from signs that do not look at the truth: residuals in the
-    view they were not fitted to, roughness, how far they differ. Without a void the last cue that speaks is
-    taken: nothing is claimed of photographs beyond their evidence.
+    sides confirm; albedo in classes and highlights found on the way. Several minima under different trust
+    in stereo and brightness are blended with weights learned from signs that do not look at the truth:
+    residuals in the view they were not fitted to, roughness, how far they differ. Without a void the last
+    cue that speaks is taken: nothing is claimed of photographs beyond their evidence.
 
     Solved by Gauss-Newton and conjugate gradients with a Galerkin multigrid, linear in pixels. Assumes one
     light, Lambertian surfaces of few albedos but for highlights. The linearised data term follows section 5.3.2

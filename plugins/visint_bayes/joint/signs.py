@@ -47,7 +47,8 @@ def signs_of(pool: Pool, pair: Pair) -> Array:
 
 def _of_scene(pool: Pool, judge: _Judge) -> list[float]:
     """Noise, size, classes of albedo, parts that shine or are hidden, and how far the candidates differ."""
-    inside, setting, found = pool.setting.domain.inside, pool.setting, pool.reflectance
+    inside, setting = pool.setting.domain.inside, pool.setting
+    found = pool.reflectance if setting.brightness is not None else None
     first = pool.surfaces["plate"]
     others = [pool.surfaces.get(name, first) for name in ("loose", "bright", "round")]
     return [

@@ -27,14 +27,15 @@ CONDITIONS = tuple(
 
 
 def staged(name: str, size: int, seed: int) -> Scene:
-    """A scene of the lab by name, or a random relief by ``relief/<rig>/<finish>``, with its noise behind a +."""
+    """A scene of the lab by name, or a random relief ``relief/<rig>/<finish>``, its noise behind a +."""
     if not name.startswith("relief/"):
         return named_scene(name, size, seed)
     plain, _, noise = name.partition("+")
     _, rig, finish = plain.split("/")
     rng = np.random.default_rng((seed, *plain.encode()))
     made = _before(rig, size)
-    tilt = turned(*rng.uniform(-0.3, 0.3, 2), rng.uniform(-3, 3))
+    nod, turn = rng.uniform(-0.3, 0.3, 2).tolist()
+    tilt = turned(nod, turn, float(rng.uniform(-3, 3)))
     position = (0.0, 0.0, 50.0) if rig == "a" else (0.0, 0.0, 0.0)
     pitch = (15.0 if rig == "a" else 26.0) / SAMPLES
     thing = Thing(HeightMap(_heights(rng) * pitch, pitch), _finish(finish, seed), position, tilt)

@@ -69,7 +69,9 @@ def test_without_a_void_the_last_cue_that_speaks_is_taken():
     image = np.random.default_rng(0).random((40, 50)).astype(np.float32)
     matched = DisparityEvidence.of(np.full((40, 50), 4.0, np.float32), 0.5, 0.9)
     where = np.arange(50) > 25
-    planes = DisparityEvidence.of(np.where(where, np.float32(5), np.nan) * np.ones((40, 1), np.float32), 0.2, 0.8)
+    planes = DisparityEvidence.of(
+        np.where(where, np.float32(5), np.nan) * np.ones((40, 1), np.float32), 0.2, 0.8
+    )
     given = {"left": image, "right": image, "matched": matched.value, "depth": np.ones((40, 50), np.float32)}
     found = Joint().run(JointInputs(disparity_evidence=(matched, planes), **given), Context())
     assert found.foreground.all()
