@@ -12,6 +12,8 @@ LEAST = 0.05
 """Brightness of a thing, of the brightest, that tells it from the void; darker rims are lost."""
 EVEN = 0.02
 """What the smoothed rim of an image may vary by (robust standard deviation) beyond noise to count as void."""
+FLAT = 0.055
+"""What the well smoothed void may vary by, of the brightest; ten per cent of noise leave 0.033."""
 FAR = 4.0
 """Standard deviations of the smoothed void that make a pixel something."""
 SPECK = 3e-4
@@ -35,9 +37,21 @@ def foreground(image: Array) -> Array | None:
     if spread > EVEN * bright + 0.01 or level > 0.25 * bright:
         return None
     apart = smooth > level + max(FAR * spread, LEAST * bright)
-    if np.mean(_rim(apart)) > 0.25 or not 0.005 < apart.mean() < 0.9:
+    if np.mean(_rim(apart)) > 0.1 or not 0.005 < apart.mean() < 0.9:
         return None
-    return _without_specks(apart)
+    mask = _without_specks(apart)
+    return mask if _even(filled, ~mask, bright) else None
+
+
+def _even(image: Array, void: Array, bright: float) -> bool:
+    """Whether nothing but noise is seen in the void: photographs with dark corners have texture there."""
+    import cv2
+
+    inner = cv2.erode(void.astype(np.uint8), np.ones((9, 9), np.uint8)) > 0
+    if not inner.any():
+        return False
+    low, high = np.percentile(cv2.GaussianBlur(image, (0, 0), 2.0)[inner], [5, 95])
+    return bool(high - low < FLAT * bright)
 
 
 def _blur(rim: Array, bright: float) -> float:

@@ -29,9 +29,10 @@ def test_the_foreground_of_a_ball_before_nothing(noise):
 
 
 def test_no_foreground_where_the_rim_shows_something():
-    """Textured photographs, bright walls and black images have no void."""
+    """Textured photographs, dark ones too, bright walls and black images have no void."""
     texture = np.random.default_rng(1).random((96, 96)).astype(np.float32)
-    for image in (texture, np.full((96, 96), 0.7, np.float32), np.zeros((96, 96), np.float32)):
+    dim = (0.05 + 0.1 * (texture > 0.5) * (X // 8 % 2) + 0.8 * DISC).astype(np.float32)
+    for image in (texture, dim, np.full((96, 96), 0.7, np.float32), np.zeros((96, 96), np.float32)):
         assert foreground(image) is None
 
 
