@@ -10,7 +10,7 @@ import numpy as np
 
 from visint.arrays import Array
 
-__all__ = ["AROUND", "EIGHT", "FOUR", "bend", "bend_of_slopes", "links", "links_within", "mean"]
+__all__ = ["AROUND", "EIGHT", "FOUR", "bend", "bend_of_slopes", "links", "links_within", "mean", "sides"]
 
 AROUND = ((-1, 0), (0, 1), (1, 0), (0, -1), (-1, -1), (-1, 1), (1, 1), (1, -1))
 """Neighbours (row, column) in the order of the bits of :func:`links`: above, right, below, left; corners."""
@@ -38,12 +38,34 @@ def links(boundaries: Array | None, size: tuple[int, int]) -> Array:
     return reached
 
 
-def links_within(boundaries: Array | None, field: Array) -> Array:
-    """The same for the regions that boundaries close, each pixel of a line belonging to one of them.
+def sides(boundaries: Array, field: Array) -> Array:
+    """int32 (H, W): the region of each pixel, closed by boundaries, from 1; lines belong to one of their sides.
 
     Boundaries have no width: a line's pixel belongs to the region beside it whose ``field`` is nearest to its
-    own, and shares what it knows with it. A line that closes nothing bars nothing. Where lines are so thick
-    that a pixel touches no region, it has no neighbours.
+    own. Where lines are so thick that a pixel touches no region it has none, 0.
+
+    Parameters
+    ----------
+    boundaries
+        bool (H, W).
+    field
+        float32 (H, W), NaN unknown: depth, or brightness.
+    """
+    import cv2
+
+    from visint.fields import _kernels
+
+    _, labels = cv2.connectedComponents((~boundaries).astype(np.uint8), connectivity=4)
+    owned = np.empty(field.shape, dtype=np.int32)
+    _kernels.owners(labels, field, owned)
+    return owned
+
+
+def links_within(boundaries: Array | None, field: Array) -> Array:
+    """:func:`links` of the regions that boundaries close, each pixel of a line on one of its sides.
+
+    A line's pixel shares what it knows with its side (:func:`sides`). A line that closes nothing bars nothing.
+    Where a pixel touches no region, it has no neighbours.
 
     Parameters
     ----------
@@ -52,16 +74,12 @@ def links_within(boundaries: Array | None, field: Array) -> Array:
     field
         float32 (H, W), NaN unknown.
     """
-    import cv2
-
     from visint.fields import _kernels
 
     if boundaries is None:
         return links(None, field.shape)
-    _, labels = cv2.connectedComponents((~boundaries).astype(np.uint8), connectivity=4)
-    owned, reached = np.empty(field.shape, dtype=np.int32), np.empty(field.shape, dtype=np.uint8)
-    _kernels.owners(labels, field, owned)
-    _kernels.links_of(owned, reached)
+    reached = np.empty(field.shape, dtype=np.uint8)
+    _kernels.links_of(sides(boundaries, field), reached)
     return reached
 
 

@@ -55,28 +55,6 @@ def sweep(here, there, weights, smoothness, reach, sides, across, sign, before, 
 
 
 @njit(cache=True, nogil=True)
-def take_sides(brightness, sides):
-    """Gives each pixel of side 0 the side of its neighbour most like it; True if there were any to give."""
-    rows, columns = sides.shape
-    before = sides.copy()
-    given = False
-    for y in range(rows):
-        for x in range(columns):
-            if before[y, x] != 0:
-                continue
-            least = np.float32(np.inf)
-            for side in range(4):
-                ny = y + (side == 0) - (side == 1)
-                nx = x + (side == 2) - (side == 3)
-                if ny < 0 or ny >= rows or nx < 0 or nx >= columns or before[ny, nx] == 0:
-                    continue
-                unlike = abs(brightness[ny, nx] - brightness[y, x])
-                if unlike < least:
-                    least, sides[y, x], given = unlike, before[ny, nx], True
-    return given
-
-
-@njit(cache=True, nogil=True)
 def compare(here, there, weights, sign, field, slope, strength, squared):
     """Residuals at a field: float32 (H, W) each, Σ w J R, Σ w J² and Σ w R²; NaN outside the other image."""
     rows, columns, kinds = here.shape

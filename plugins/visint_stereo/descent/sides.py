@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from visint.arrays import Array
+from visint.fields import barriers
 
 __all__ = ["LOOSE", "one_side", "seen_in_the_other_view", "sides_of"]
 
@@ -26,20 +27,13 @@ def sides_of(boundaries: Array, brightness: Array) -> Array:
     Parameters
     ----------
     boundaries
-        bool (H, W), one to a few pixels wide.
+        bool (H, W), one to two pixels wide.
     brightness
         float32 (H, W), tells to which region a pixel of the boundary belongs.
     """
-    import cv2
-
-    from visint_stereo.descent import _kernels
-
-    _, regions = cv2.connectedComponents((~boundaries).astype(np.uint8), connectivity=4)
-    sides = np.ascontiguousarray(regions, np.int32)
-    while _kernels.take_sides(brightness, sides):
-        pass
-    sides[_parts_nothing(boundaries, sides)] = LOOSE
-    return sides
+    found = barriers.sides(boundaries, brightness)
+    found[(found == 0) | _parts_nothing(boundaries, found)] = LOOSE
+    return found
 
 
 def _parts_nothing(boundaries: Array, sides: Array) -> Array:
