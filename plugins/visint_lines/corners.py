@@ -14,7 +14,7 @@ __all__ = ["corners"]
 BLUNT, BLUNTER = 0.6, 0.42
 """Parts of the least turn that do between straight lines, and between straight lines of twice the length."""
 FAINT = 0.42
-"""Part of the least turn from which on a corner is one if two long straight lines explain it and no ellipse does."""
+"""Part of the least turn that does where two long straight lines explain it and no ellipse does."""
 SIDE, SKIPPED = 24, 3
 """Points of either side that corner and ellipse have to explain, beyond those that smoothing has bent."""
 LONG = 14
@@ -31,8 +31,8 @@ def corners(points: Array, closed: bool, angle: float, window: int = 14) -> list
     Two readings of the turn, each with its own sort of noise: tangents of parabolas, which allow for
     bend of a curve, and straight lines, less the turn that the bend of either side explains. The second is
     made at two lengths: the longer is surer of blunt corners, the shorter of those near others. What turns
-    sharply may still be the rim of a cap seen at a low angle: an ellipse explains it, and it is no corner. Blunt
-    turns are corners where two straight lines explain them much better.
+    sharply may still be the rim of a cap seen at a low angle: an ellipse explains it, and it is no corner.
+    Blunt turns are corners where two straight lines explain them much better.
 
     Parameters
     ----------

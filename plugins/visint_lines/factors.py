@@ -55,7 +55,7 @@ def _table(junction: Junction, arcs: tuple[int, ...], prior: Mapping[str, float]
         walked = dict(zip(arcs, (LABELS[i] for i in choice), strict=True))
         away = tuple(walked[s.arc] if s.outward else FLIP[walked[s.arc]] for s in junction.spokes)
         weight = max(prior[kind] * (1.0 if fits(kind, away, junction.angles) else illegal) for kind in prior)
-        if "T" in prior and tuple(away[i] for i in slots("T", junction.angles)) in _close_by():
+        if "T" in prior and _two_in_one(away, junction.angles):
             weight = max(weight, NEAR * (prior["T"] + prior["R"]))
         if "x" in away and weight < MARKED:
             weight = max(weight, _marked(away, junction.angles, prior, illegal))
@@ -72,6 +72,10 @@ def _close_by() -> frozenset[tuple[str, ...]]:
     first = {(one, stem, two) for bar, stem, two in bars for one in onward[bar]}
     second = {(one, stem, two) for one, stem, bar in bars for two in onward[bar]}
     return frozenset((first | second) - bars)
+
+
+def _two_in_one(away: tuple[str, ...], angles: tuple[float, ...]) -> bool:
+    return tuple(away[i] for i in slots("T", angles)) in _close_by()
 
 
 def _marked(
@@ -111,6 +115,8 @@ def best_type(
     away = tuple(labels[s.arc] if s.outward else FLIP[labels[s.arc]] for s in junction.spokes)
     allowed = {kind: fits(kind, away, junction.angles) for kind in prior}
     weight = {kind: share * (1.0 if allowed[kind] else illegal) for kind, share in prior.items()}
+    if "T" in prior and not any(allowed.values()) and _two_in_one(away, junction.angles):
+        allowed["T"], weight["T"] = True, NEAR * (prior["T"] + prior["R"])
     if "x" in away and not any(allowed.values()):
         weight = dict(prior)
         allowed = {kind: _marked(away, junction.angles, prior, 0.0) > 0 for kind in prior}

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from visint.arrays import Array
 
-__all__ = ["LEAST", "limb_points", "limb_runs"]
+__all__ = ["LEAST", "LimbPoints", "limb_points", "limb_runs", "withdrawn"]
 
 LEAST = 6
 """Samples below which nothing is said."""
@@ -23,6 +24,10 @@ DROP = np.radians(3.0)
 """By how much the angle falls over the samples of a limb, whose radius may be some hundred pixels."""
 BENT = 0.7
 """Part of the least starting angle that the samples themselves must have."""
+LOWEST = np.radians(75.0)
+"""Mean angle at which two samples do for a limb, where there are too few for the tests."""
+CLOSE = np.radians(83.0)
+"""Angle at the boundary below which a stretch of limb has ended, though what follows still looks like one."""
 GRAIN = np.radians(1.0)
 """Angles are rounded to this before they are ranked: ranks of rounding errors are noise."""
 HIT, FALSE = 0.85, 0.04
@@ -31,9 +36,20 @@ CHANGE = 10.0
 """What it costs, in nats, that a line changes between limb and none: about five points' worth."""
 
 
-def limb_points(slant: Array, offset: Array, size: float, start: float) -> tuple[Array, Array]:
-    """(passed, asked), bool (...): whether angles (..., M), by distance from the boundary, pass both tests of
-    section 4.1.3, and whether there were :data:`LEAST` of them, so that anything could be said.
+class LimbPoints(NamedTuple):
+    """``passed``, ``asked``: bool (...), whether it is a limb, and whether anything could be said.
+
+    ``edge``: float (...), radians, the angle at the boundary itself.
+    """
+
+    passed: Array
+    asked: Array
+    edge: Array
+
+
+def limb_points(slant: Array, offset: Array, size: float, start: float) -> LimbPoints:
+    """Whether angles (..., M), by distance from the boundary, pass both tests of section 4.1.3, which at least
+    :data:`LEAST` of them can.
 
     The trend: Spearman's rank correlation S of angle and distance is negative, R = S √((m−2)/(1−S²)) below the
     ``size`` quantile of Student's t, one-sided; and from end to end the angle falls by :data:`DROP` at least,
@@ -51,11 +67,12 @@ def limb_points(slant: Array, offset: Array, size: float, start: float) -> tuple
     rank = known.cumsum(axis=-1)
     begin = _mean(slant, known & (rank <= FIRST))
     end = _mean(slant, known & (rank > count[..., None] - FIRST))
-    begins = np.maximum(
-        begin, np.where(begin > _bent(known, offset) * start, _at_boundary(slant, known, offset), 0)
-    )
+    there = _at_boundary(slant, known, offset)
+    begins = np.maximum(begin, np.where(begin > _bent(known, offset) * start, there, 0))
     critical = np.array([_critical(m, size) for m in range(slant.shape[-1] + 1)])
-    return (trend < critical[count]) & (begin - end > DROP) & (begins > start) & (count >= FEWEST), asked
+    passed = (trend < critical[count]) & (begin - end > DROP) & (begins > start) & (count >= FEWEST)
+    low = ~asked & (count >= 2) & (begin > LOWEST)
+    return LimbPoints(passed & asked | low, asked | low, there)
 
 
 def _mean(value: Array, where: Array) -> Array:
@@ -126,6 +143,30 @@ def limb_runs(passed: Array, asked: Array, closed: bool, blur: float = 0.0) -> l
     seamless = states[0] == states[-1]  # the run across the seam is one
     edges = [*cuts.tolist(), int(cuts[0]) + count] if seamless else [0, *cuts.tolist(), count]
     return [(a, b, bool(states[a % count])) for a, b in pairwise(edges)]
+
+
+def withdrawn(runs: list[tuple[int, int, bool]], edge: Array, closed: bool) -> list[int]:
+    """Where ``runs`` begin, with limbs drawn back to where the surface is seen edge-on at the boundary.
+
+    The rim that a limb passes into is at first seen at almost as low an angle. ``edge``: float (N,), the angle
+    at the boundary of each point. An open line's first run begins at its end in any case.
+    """
+    starts = [first for first, _, _ in runs]
+    for i, (first, behind, limb) in enumerate(runs):
+        on = _even(edge[np.arange(first, behind) % len(edge)]) > CLOSE
+        if not limb or len(runs) < 2 or not on.any():
+            continue
+        if closed or i > 0:
+            starts[i] += int(on.argmax())
+        if closed or i + 1 < len(runs):
+            starts[(i + 1) % len(runs)] = behind - int(on[::-1].argmax())
+    return starts
+
+
+def _even(value: Array) -> Array:
+    """The median of each and its four neighbours."""
+    wide = np.pad(value, 2, mode="edge")
+    return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(wide, 5), axis=-1))
 
 
 def _cheapest(cost: Array, change: float) -> Array:

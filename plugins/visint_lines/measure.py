@@ -13,9 +13,10 @@ from visint.arrays import Array, Confidence, Depth, Regions, read_only
 from visint.fields import Camera
 from visint.module import Context, Module, Params, Ports
 from visint_lines.diagram import Diagram, Measures
-from visint_lines.limbness import limb_points
+from visint_lines.faces import flat_faces
+from visint_lines.limbness import LimbPoints, limb_points
 from visint_lines.profile import Profile, profile
-from visint_lines.sections import Sections, cut, surfaces
+from visint_lines.sections import Sections, Surfaces, cut, surfaces
 from visint_lines.splitting import split
 
 __all__ = ["Features", "FeaturesParams"]
@@ -24,6 +25,10 @@ UNTOLD = 0.3
 """Limbness of a side too narrow to tell."""
 OFF = 0.6
 """Pixels by which a line lies off its place: on a steep face that makes a gap."""
+
+
+HIDES = 2.0
+"""Pixels of depth by which a limb is nearer than what it hides."""
 
 
 class FeaturesParams(Params):
@@ -99,8 +104,8 @@ class Features(Module[FeaturesParams, FeaturesInputs, FeaturesOutputs]):
         blur = p.blur / ctx.scale
         sections = cut(inputs.diagram, seen, _offsets(max(p.across, p.samples), blur))
         ctx.check()
-        found = _observed(sections, p, blur)
-        diagram, owner = split(inputs.diagram, sections.arc, sections.point, found.passed, found.asked, blur)
+        found = _observed(sections, p, blur, _flat(inputs.diagram, sections.arc, seen))
+        diagram, owner = split(inputs.diagram, sections.arc, sections.point, found.points, blur)
         diagram = replace(
             diagram,
             arcs=tuple(
@@ -118,25 +123,40 @@ def _offsets(count: int, blur: float) -> Array:
 
 
 class _Observed(NamedTuple):
-    """Section by section: the profile; whether either side (N, 2) is a limb's and can tell; whether any."""
+    """Section by section: the profile; whether either side (N, 2) is a limb's and can tell; the line itself."""
 
     profile: Profile
     limb: Array
     told: Array
-    passed: Array
-    asked: Array
+    points: LimbPoints
     off: float
 
 
-def _observed(sections: Sections, p: FeaturesParams, blur: float) -> _Observed:
-    near = int(blur)
-    limb, asked = limb_points(sections.of(p.samples, near).slant, sections.offset, p.size, p.start)
+def _flat(diagram: Diagram, arc: Array, seen: Surfaces) -> Array:
+    """bool (N, 2): whether the region on either side of each section is flat."""
+    sides = np.array([(a.left, a.right) for a in diagram.arcs], dtype=np.int64).reshape(-1, 2)
+    return np.asarray(flat_faces(seen)[sides[arc]])
+
+
+def _observed(sections: Sections, p: FeaturesParams, blur: float, flat: Array) -> _Observed:
+    near, off = int(blur), OFF * (1 + blur / 4)
+    limb, asked, edge = limb_points(sections.of(p.samples, near).slant, sections.offset, p.size, p.start)
     faces = sections.of(p.across, near)
     told = profile(faces.depth, sections.offset, faces.there)
-    behind = np.stack([told.gap < 0, told.gap > 0], axis=-1) & told.seen[:, None]
-    limb &= ~behind  # a limb hides what is behind it
-    nearer = np.where(told.seen, asked[np.arange(len(asked)), (told.gap < 0).astype(int)], asked.any(axis=1))
-    return _Observed(told, limb, asked, np.asarray(limb.any(axis=1)), nearer, OFF * (1 + blur / 4))
+    least = HIDES + off * told.steepness
+    nearer_by = np.stack([told.gap, -told.gap], axis=-1)
+    limb &= ~(told.seen[:, None] & (nearer_by < least[:, None]))  # a limb hides what is behind it
+    limb &= ~flat
+    asked |= flat
+    return _Observed(told, limb, asked, _of_line(LimbPoints(limb, asked, edge), told), off)
+
+
+def _of_line(sides: LimbPoints, told: Profile) -> LimbPoints:
+    """The same of the lines, from what is said of their two sides: the limb counts, or else the nearer side."""
+    which = np.where(sides.passed.any(axis=1), sides.passed[:, 1], told.gap < 0).astype(np.int64)
+    rows = np.arange(len(which))
+    asked = np.where(told.seen, sides.asked[rows, (told.gap < 0).astype(np.int64)], sides.asked.any(axis=1))
+    return LimbPoints(np.asarray(sides.passed.any(axis=1)), np.asarray(asked), sides.edge[rows, which])
 
 
 def _summed(found: _Observed, mine: Array) -> Measures:

@@ -15,9 +15,11 @@ __all__ = ["Thresholds", "arc_prior", "type_prior"]
 
 FLAT = {"+": 0.25, "-": 0.15, ">": 0.2, "<": 0.2, ">>": 0.05, "<<": 0.05, "x": 0.1}
 """What is believed of an arc of which depth says nothing."""
+UNMARKED = 0.3
+"""Of a mark where depth is known but not here: that is a face too narrow, which no mark leaves."""
 FAR = 1e4
 """A gap, in pixels, that stands for one to where nothing is known."""
-BLUNTEST = radians(167)
+BLUNTEST = radians(174)
 """The angle from which on two lines that meet in a corner are one: corners have been told from bends before."""
 BENT_C = 0.4
 """How well a curvature-L may pass for bent: below the window of the corners it looks like one."""
@@ -66,7 +68,8 @@ def arc_prior(measures: Measures | None, background: str, floating: float, at: T
     told = np.array([FLAT[label] for label in LABELS])
     if measures is not None:
         trust = min(1.0, (1.0 if abs(measures.gap) == inf else measures.seen) / LEAST_SEEN)
-        told = trust * _from_depth(measures, at) + (1 - trust) * told
+        told[LABELS.index("x")] *= UNMARKED
+        told = trust * _from_depth(measures, at) + (1 - trust) * told / told.sum()
     if background:
         inside = (">", ">>") if background == "left" else ("<", "<<")
         told = told * np.array([floating if label in inside else 1 - floating for label in LABELS])

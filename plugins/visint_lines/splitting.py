@@ -9,7 +9,7 @@ import numpy as np
 from visint.arrays import Array, read_only
 from visint_lines.curves import departure
 from visint_lines.diagram import LOOP, Arc, Diagram, assembled
-from visint_lines.limbness import limb_runs
+from visint_lines.limbness import LimbPoints, limb_runs, withdrawn
 
 __all__ = ["SHORTEST", "split"]
 
@@ -18,7 +18,7 @@ SHORTEST = 12
 
 
 def split(
-    diagram: Diagram, arc_of: Array, index: Array, passed: Array, asked: Array, blur: float
+    diagram: Diagram, arc_of: Array, index: Array, points: LimbPoints, blur: float
 ) -> tuple[Diagram, Array]:
     """The diagram with its arcs cut between limb and no limb, and the new arc of each section.
 
@@ -26,8 +26,8 @@ def split(
     ----------
     arc_of, index
         int (N,): arc of each section, and the point it goes through.
-    passed, asked
-        bool (N,): whether the section is a limb's, and whether it can tell.
+    points
+        (N,): whether the section is a limb's, whether it can tell, and the angle at the line.
     blur
         Pixels by which depth is blurred: neighbouring sections then err together.
     """
@@ -38,7 +38,8 @@ def split(
     owner = np.empty(len(arc_of), dtype=np.int64)
     for number, arc in enumerate(diagram.arcs):
         mine = np.flatnonzero(arc_of == number)
-        cuts = _cuts(arc, index[mine], limb_runs(passed[mine], asked[mine], arc.closed, blur))
+        runs = limb_runs(points.passed[mine], points.asked[mine], arc.closed, blur)
+        cuts = _cuts(arc, index[mine], withdrawn(runs, points.edge[mine], arc.closed))
         owner[mine] = len(arcs) + _piece_of(index[mine], cuts, arc.closed)
         arcs += _between(arc, cuts, len(spots))
         spots += [(float(x), float(y)) for x, y in arc.points[cuts]]
@@ -49,13 +50,12 @@ def split(
     return assembled(diagram.size, places, arcs, angles, np.array(frame, bool), np.array(smooth, bool)), owner
 
 
-def _cuts(arc: Arc, index: Array, runs: list[tuple[int, int, bool]]) -> list[int]:
+def _cuts(arc: Arc, index: Array, starts: list[int]) -> list[int]:
     """Points at which the arc is cut, ascending; a closed one has none or at least two."""
-    if len(runs) < 2:
+    if len(starts) < 2:
         return []
     count = len(index)
-    starts = runs if arc.closed else runs[1:]
-    at = sorted({int(index[first % count]) for first, _, _ in starts})
+    at = sorted({int(index[first % count]) for first in (starts if arc.closed else starts[1:])})
     last = len(arc.points) - 1
     if arc.closed:
         gaps = np.diff([*at, at[0] + last])

@@ -9,7 +9,7 @@ import pytest
 
 from visint_lines.catalogue import LABELS
 from visint_lines.diagram import Arc, Diagram, Junction, Measures, Spoke
-from visint_lines.limbness import limb_points, limb_runs
+from visint_lines.limbness import limb_points, limb_runs, withdrawn
 from visint_lines.priors import Thresholds, arc_prior, type_prior
 
 
@@ -94,16 +94,23 @@ class TestLimbness:
         offset = np.arange(1.0, 11.0)
         ball = np.arcsin(np.clip(1 - offset / radius, -1, 1))
         plane = np.full(10, radians(80))
-        passed, asked = limb_points(np.stack([ball, plane]), offset, 0.01, radians(68))
+        passed, asked, _ = limb_points(np.stack([ball, plane]), offset, 0.01, radians(68))
         assert passed.tolist() == [True, False]
         assert asked.all()
 
     def test_too_few_samples_say_nothing(self):
+        """Unless the surface is seen at a very low angle."""
         offset = np.arange(1.0, 11.0)
-        slant = np.where(offset < 4, 1.4, np.nan)
-        passed, asked = limb_points(slant, offset, 0.01, radians(68))
-        assert not passed
-        assert not asked
+        for angle, limb in ((1.2, False), (1.4, True)):
+            passed, asked, _ = limb_points(np.where(offset < 4, angle, np.nan), offset, 0.01, radians(68))
+            assert passed == asked == limb
+
+    def test_a_limb_ends_where_the_rim_begins(self):
+        """The rim at first still looks like a limb, but at the boundary itself it is not seen edge-on."""
+        edge = np.radians([90.0] * 12 + [80.0] * 8 + [40.0] * 20)
+        assert withdrawn([(0, 20, True), (20, 40, False)], edge, closed=False) == [0, 12]
+        turned = np.roll(edge, 10)
+        assert sorted(at % 40 for at in withdrawn([(10, 30, True), (30, 50, False)], turned, True)) == [10, 22]
 
     def test_stretches_of_a_line(self):
         """Single points that fail do not break a limb; a closed line's stretch may run across its seam."""

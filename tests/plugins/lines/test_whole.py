@@ -151,7 +151,7 @@ def limb_points_of(pair, seed, noise):
     """(true edge kind, whether taken for a limb) of every section across a line."""
     from scipy.ndimage import distance_transform_edt
 
-    from visint_lines.measure import _observed, _offsets
+    from visint_lines.measure import _flat, _observed, _offsets
     from visint_lines.sections import cut, surfaces
 
     rng, params = np.random.default_rng(seed), FeaturesParams()
@@ -168,7 +168,8 @@ def limb_points_of(pair, seed, noise):
         [drawing.diagram.arcs[a].points[i] for a, i in zip(sections.arc, sections.point, strict=True)]
     )
     column, row = (np.clip(np.rint(v).astype(int), 0, 255) for v in spots.T)
-    return label[row, column], _observed(sections, params, 0.0).passed
+    flat = _flat(drawing.diagram, sections.arc, seen)
+    return label[row, column], _observed(sections, params, 0.0, flat).points.passed
 
 
 @pytest.mark.slow
