@@ -33,7 +33,7 @@ class Measures(NamedTuple):
     left, right
         Limbness, in [0, 1]: the share of points at which the surface on that side turns away as a limb does.
     seen
-        The share of points at which depth is known on both sides.
+        The share of points at which depth is known on both sides, beyond where it is blurred.
     """
 
     gap: float = 0.0

@@ -47,7 +47,7 @@ class LimbPoints(NamedTuple):
     edge: Array
 
 
-def limb_points(slant: Array, offset: Array, size: float, start: float) -> LimbPoints:
+def limb_points(slant: Array, offset: Array, size: float, start: float, sharp: bool = True) -> LimbPoints:
     """Whether angles (..., M), by distance from the boundary, pass both tests of section 4.1.3, which at least
     :data:`LEAST` of them can.
 
@@ -71,7 +71,7 @@ def limb_points(slant: Array, offset: Array, size: float, start: float) -> LimbP
     begins = np.maximum(begin, np.where(begin > _bent(known, offset) * start, there, 0))
     critical = np.array([_critical(m, size) for m in range(slant.shape[-1] + 1)])
     passed = (trend < critical[count]) & (begin - end > DROP) & (begins > start) & (count >= FEWEST)
-    low = ~asked & (count >= 2) & (begin > LOWEST)
+    low = ~asked & (count >= 2) & (begin > LOWEST) & sharp
     return LimbPoints(passed & asked | low, asked | low, there)
 
 

@@ -129,6 +129,7 @@ class _Observed(NamedTuple):
     limb: Array
     told: Array
     points: LimbPoints
+    wide: Array
     off: float
 
 
@@ -140,7 +141,8 @@ def _flat(diagram: Diagram, arc: Array, seen: Surfaces) -> Array:
 
 def _observed(sections: Sections, p: FeaturesParams, blur: float, flat: Array) -> _Observed:
     near, off = int(blur), OFF * (1 + blur / 4)
-    limb, asked, edge = limb_points(sections.of(p.samples, near).slant, sections.offset, p.size, p.start)
+    slant = sections.of(p.samples, near).slant
+    limb, asked, edge = limb_points(slant, sections.offset, p.size, p.start, sharp=blur == 0)
     faces = sections.of(p.across, near)
     told = profile(faces.depth, sections.offset, faces.there)
     least = HIDES + off * told.steepness
@@ -148,7 +150,7 @@ def _observed(sections: Sections, p: FeaturesParams, blur: float, flat: Array) -
     limb &= ~(told.seen[:, None] & (nearer_by < least[:, None]))  # a limb hides what is behind it
     limb &= ~flat
     asked |= flat
-    return _Observed(told, limb, asked, _of_line(LimbPoints(limb, asked, edge), told), off)
+    return _Observed(told, limb, asked, _of_line(LimbPoints(limb, asked, edge), told), sections.wide(near), off)
 
 
 def _of_line(sides: LimbPoints, told: Profile) -> LimbPoints:
@@ -169,7 +171,7 @@ def _summed(found: _Observed, mine: Array) -> Measures:
         for passed, asked in zip(found.limb[mine].sum(axis=0), found.told[mine].sum(axis=0), strict=True)
     )
     both = mine & told.seen
-    seen = float(both.sum() / count)
+    seen = float((both & found.wide).sum() / count)
     if both.sum() >= max(2, 0.3 * count):
         gap, spread = _middle(told.gap[both])
         spread = float(np.hypot(spread, found.off * np.median(told.steepness[both])))

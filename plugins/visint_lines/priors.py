@@ -15,6 +15,8 @@ __all__ = ["Thresholds", "arc_prior", "type_prior"]
 
 FLAT = {"+": 0.25, "-": 0.15, ">": 0.2, "<": 0.2, ">>": 0.05, "<<": 0.05, "x": 0.1}
 """What is believed of an arc of which depth says nothing."""
+FAINTEST = np.array([1e-4 if label != "x" else 1e-6 for label in LABELS])
+"""What is left of labels that features exclude: lines that are hard to measure are seldom marks."""
 UNMARKED = 0.3
 """Of a mark where depth is known but not here: that is a face too narrow, which no mark leaves."""
 FAR = 1e4
@@ -27,6 +29,8 @@ TOUCH = 0.1
 """How likely a limb leaves a three-tangent junction in a direction that shows no tangency."""
 FLOOR = 0.02
 """No type of junction is impossible: features are measured."""
+NARROW = 0.2
+"""How far they are believed where a side is too narrow to have depth that is not its neighbour's as well."""
 LEAST_SEEN = 0.3
 """Share of an arc's points with depth on both sides from which on its features are fully believed."""
 
@@ -67,7 +71,8 @@ def arc_prior(measures: Measures | None, background: str, floating: float, at: T
     """
     told = np.array([FLAT[label] for label in LABELS])
     if measures is not None:
-        trust = min(1.0, (1.0 if abs(measures.gap) == inf else measures.seen) / LEAST_SEEN)
+        least = NARROW if measures.spread < inf else 0.0
+        trust = max(least, min(1.0, (1.0 if abs(measures.gap) == inf else measures.seen) / LEAST_SEEN))
         told[LABELS.index("x")] *= UNMARKED
         told = trust * _from_depth(measures, at) + (1 - trust) * told / told.sum()
     if background:
@@ -92,7 +97,7 @@ def _from_depth(m: Measures, at: Thresholds) -> Array:
     }
     occludes, limb = said[">"] + said["<"], said[">>"] + said["<<"]
     said["x"] = 1 - max(said["+"], said["-"], occludes, limb)
-    told = np.array([said[label] for label in LABELS]) + 1e-4
+    told = np.array([said[label] for label in LABELS]) + FAINTEST
     return np.asarray(told / told.sum())
 
 
