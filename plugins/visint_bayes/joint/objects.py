@@ -6,6 +6,7 @@ import numpy as np
 
 from visint.arrays import Array
 from visint.fields import Camera, Light
+from visint_bayes.joint.outline import LOST, outlined, unmatched
 from visint_bayes.joint.setting import Pair
 
 __all__ = ["pair_of"]
@@ -19,6 +20,8 @@ def pair_of(images: tuple[Array, Array], matched: Array, camera: Camera, light: 
     if inside is None or inside_right is None or not np.isfinite(matched).any():
         return None
     stereo = np.nan_to_num(matched, nan=float(np.nanmedian(matched))).astype(np.float32)
+    if unmatched(stereo, inside, inside_right) > LOST:
+        stereo = np.where(inside, outlined(inside, inside_right), stereo)
     there = _seen_from_the_right(stereo, inside)
     return Pair(*images, inside, inside_right, stereo, there, camera, light)
 

@@ -9,6 +9,7 @@ from visint_bayes.joint.choice import Choice, shipped, weights_of
 from visint_bayes.joint.cuts import cut_by, patches, standing
 from visint_bayes.joint.doubt import SIGNS, shipped_doubt
 from visint_bayes.joint.noise import noise_inside
+from visint_bayes.joint.outline import LOST, outlined, unmatched
 from visint_bayes.joint.reflectance import reflectance
 from visint_bayes.joint.scales import enlarged
 from visint_bayes.joint.void import foreground
@@ -103,3 +104,13 @@ def test_enlarging_keeps_planes():
     wanted = 3 + 0.5 * ((u + 0.5) / 2 - 0.5) - 0.25 * ((v + 0.5) / 2 - 0.5)
     assert large.shape == (192, 191)
     assert np.abs(large - wanted)[2:-2, 2:-2].max() < 1e-9
+
+
+def test_a_folded_surface_is_known_by_what_it_leaves_unmatched():
+    """The disc 10 px to the left in the other view: matched well, everything is met; folded, half is not."""
+    right = np.roll(DISC, -10, axis=1)
+    flat = np.full(DISC.shape, 10.0, np.float32)
+    folded = (10 + 0.8 * (X - 47.5)).astype(np.float32)
+    assert unmatched(flat, DISC, right) < 0.02
+    assert unmatched(folded, DISC, right) > LOST
+    assert np.abs(outlined(DISC, right) - 10)[DISC].max() < 0.01
