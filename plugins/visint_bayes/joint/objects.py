@@ -30,7 +30,7 @@ def _seen_from_the_right(stereo: Array, inside: Array) -> Array:
     """The right view's disparity that the left one implies, complete."""
     from scipy.ndimage import distance_transform_edt
 
-    from visint_bayes.joint import _kernels
+    from visint_bayes.joint.matching import _kernels
 
     there = np.empty_like(stereo)
     _kernels.nearest_there(stereo, inside, there)

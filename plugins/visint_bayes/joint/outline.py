@@ -16,7 +16,7 @@ ROWS = 9
 
 def unmatched(field: Array, inside: Array, inside_right: Array) -> float:
     """Part of the right view's foreground that no pixel of the left one's reaches at ``field`` (H, W)."""
-    from visint_bayes.joint import _kernels
+    from visint_bayes.joint.matching import _kernels
 
     there = np.empty_like(field)
     _kernels.nearest_there(field, inside, there)

@@ -78,7 +78,7 @@ def data_term(views: Views, field: Array, gap: Array, spread: float = 3.0) -> Da
     d - r/J with weight J²/(area σ²), less where the residual is beyond ``spread`` standard deviations (robust),
     where the two views' disparities differ (``gap`` px), and nothing where the match leaves the right mask.
     """
-    from visint_bayes.joint import _kernels
+    from visint_bayes.joint.matching import _kernels
 
     value, change, inside, _ = (np.empty_like(field) for _ in range(4))
     _kernels.warp(views.right, field, -1.0, value, change)

@@ -62,7 +62,7 @@ def blur_for(noise: float) -> float:
 
 def setting_of(pair: Pair) -> tuple[Setting, float]:
     """The setting without shading, and the noise found."""
-    from visint_bayes.joint import _kernels
+    from visint_bayes.joint.matching import _kernels
 
     noise = max(noise_inside(pair.left, pair.inside), noise_inside(pair.right, pair.inside_right))
     masks = (pair.inside, pair.inside_right)

@@ -104,7 +104,7 @@ class _Judge:
         )
 
     def _warped(self, image: Array, surface: Array) -> Array:
-        from visint_bayes.joint import _kernels
+        from visint_bayes.joint.matching import _kernels
 
         value, spare = np.empty_like(surface), np.empty_like(surface)
         _kernels.warp(image, surface, -1.0, value, spare)

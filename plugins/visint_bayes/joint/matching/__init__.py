@@ -1,0 +1,1 @@
+"""Where matches lead: the second view seen through a disparity."""
