@@ -32,6 +32,8 @@ GRAIN = np.radians(1.0)
 """Angles are rounded to this before they are ranked: ranks of rounding errors are noise."""
 HIT, FALSE = 0.85, 0.04
 """Share of the points of a limb, and of other lines, that pass both tests."""
+HIT_BLURRED, FALSE_BLURRED = 0.7, 0.1
+"""The same of blurred depth, where neighbouring points err together and each says less."""
 CHANGE = 10.0
 """What it costs, in nats, that a line changes between limb and none: about five points' worth."""
 
@@ -133,7 +135,8 @@ def limb_runs(passed: Array, asked: Array, closed: bool, blur: float = 0.0) -> l
     count = len(passed)
     if count == 0:
         return []
-    cost = -np.log(np.where(passed[:, None], [FALSE, HIT], [1 - FALSE, 1 - HIT])) * asked[:, None]
+    hit, false = (HIT_BLURRED, FALSE_BLURRED) if blur else (HIT, FALSE)
+    cost = -np.log(np.where(passed[:, None], [false, hit], [1 - false, 1 - hit])) * asked[:, None]
     change = CHANGE * (1 + blur / 4)
     states = _cheapest(np.tile(cost, (3, 1)), change)[count : 2 * count] if closed else _cheapest(cost, change)
     cuts = np.flatnonzero(np.diff(states.astype(np.int8))) + 1

@@ -149,8 +149,11 @@ def _observed(sections: Sections, p: FeaturesParams, blur: float, flat: Array) -
     nearer_by = np.stack([told.gap, -told.gap], axis=-1)
     limb &= ~(told.seen[:, None] & (nearer_by < least[:, None]))  # a limb hides what is behind it
     limb &= ~flat
-    asked |= flat
-    return _Observed(told, limb, asked, _of_line(LimbPoints(limb, asked, edge), told), sections.wide(near), off)
+    wide = sections.wide(near)
+    asked = (asked | flat) & wide
+    limb &= asked
+    line = _of_line(LimbPoints(limb, asked, edge), told)
+    return _Observed(told, limb, asked, line, wide.all(axis=1), off)
 
 
 def _of_line(sides: LimbPoints, told: Profile) -> LimbPoints:

@@ -59,8 +59,8 @@ class Sections(NamedTuple):
     there: Array
 
     def wide(self, near: int) -> Array:
-        """bool (N,): whether both sides reach beyond the ``near`` samples that are not to be believed."""
-        return np.asarray((self.there[:, :, near:].sum(axis=2) >= (FEW if near else 0)).all(axis=1))
+        """bool (N, 2): whether each side reaches beyond the ``near`` samples that are not to be believed."""
+        return np.asarray(self.there[:, :, near:].sum(axis=2) >= (FEW if near else 0))
 
     def of(self, first: int, near: int) -> Sections:
         """The first samples beyond the ``near`` ones of each section; where those are too few, all it has."""
