@@ -179,19 +179,18 @@ def _labels(
 def _contour(
     prober: Prober, close: tuple[_End, _End], pixels: tuple[_End, _End], nearer_second: Flags
 ) -> NDArray[np.int64]:
-    """Limb where the nearer surface is just seen edge-on.
+    """Limb where the nearer surface turns away until it is just seen edge-on; a flat face that is, has an edge.
 
     The normals of a mesh are never quite so: there it is enough that the surface is seen at a low angle and
-    turns away within the pixel, which a flat face does not.
+    turns away within the pixel.
     """
     near, pixel = (pair[0].moved(nearer_second, pair[1]) for pair in (close, pixels))
     ray = _rays(prober, near)
     slant = np.abs((near.sight.normals * ray).sum(-1)) / np.linalg.norm(ray, axis=-1)
-    turns = _same_face(near, pixel) & (
-        (near.sight.normals * pixel.sight.normals).sum(-1) < np.cos(np.radians(0.5))
-    )
-    lenient = turns & (slant < MESH_EDGE_ON) & prober.of_mesh[near.sight.thing]
-    return np.where((slant < EDGE_ON) | lenient, LIMB, OCCLUDING)
+    same = _same_face(near, pixel)
+    turns = (near.sight.normals * pixel.sight.normals).sum(-1) < np.cos(np.radians(0.5))
+    lenient = same & turns & (slant < MESH_EDGE_ON) & prober.of_mesh[near.sight.thing]
+    return np.where((slant < EDGE_ON) & ~(same & ~turns) | lenient, LIMB, OCCLUDING)
 
 
 def _crease(prober: Prober, close: tuple[_End, _End], pixels: tuple[_End, _End]) -> NDArray[np.int64]:

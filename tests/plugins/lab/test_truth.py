@@ -254,6 +254,13 @@ def test_noise_has_the_asked_spread_and_follows_its_seed():
     assert (factor - 0.5).std() == pytest.approx(0.05, rel=0.05)
 
 
+def test_a_flat_face_seen_at_a_low_angle_has_no_limb():
+    """The far edge of a long box's side is seen at an angle whose cosine is 0.03: it occludes, as any edge."""
+    edges = render(scene(Box(2.75, 5.0, 20.0)), samples=1).truth.edges
+    assert not (edges == 1).any()
+    assert (edges == 2).sum() > 50
+
+
 def test_checker_edges_are_marks_and_box_edges_are_creases():
     """A turned checkered box has convex creases inside its outline, marks on its faces, no limb."""
     pair = render(scene(Box(6, 6, 6), Checker(size=3.0), rotation=turned(0.6, 0.7)), samples=1)
