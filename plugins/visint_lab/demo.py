@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 EXAMPLES = "Examples: visint demo;  visint demo --size 256 --out sphere;  visint run demo/run.json --out again"
 
-GRAPH = "stereo_sgm"
+GRAPH = "joint"
 """The graph that the demonstration runs: the best system there is."""
 
 
