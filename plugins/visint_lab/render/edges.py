@@ -21,6 +21,7 @@ NO_EDGE, LIMB, OCCLUDING, CONVEX, CONCAVE, MARK, SHADOW = range(7)
 NAMES = ("none", "limb", "occluding", "convex crease", "concave crease", "mark", "shadow")
 HALVINGS = 18
 EDGE_ON, MESH_EDGE_ON = 0.05, 0.3  # cosines between normal and ray
+INWARDS, FLAT = 1e-3, 1e-8  # parts of a pixel; a limb of 1000 pixels' radius turns by 1e-6 over that
 GEOMETRY, ALBEDO, LIGHTING = 1, 2, 3
 
 Flags = NDArray[np.bool_]
@@ -185,12 +186,22 @@ def _contour(
     turns away within the pixel.
     """
     near, pixel = (pair[0].moved(nearer_second, pair[1]) for pair in (close, pixels))
+    mesh = prober.of_mesh[near.sight.thing]
     ray = _rays(prober, near)
     slant = np.abs((near.sight.normals * ray).sum(-1)) / np.linalg.norm(ray, axis=-1)
-    same = _same_face(near, pixel)
-    turns = (near.sight.normals * pixel.sight.normals).sum(-1) < np.cos(np.radians(0.5))
-    lenient = same & turns & (slant < MESH_EDGE_ON) & prober.of_mesh[near.sight.thing]
-    return np.where((slant < EDGE_ON) & ~(same & ~turns) | lenient, LIMB, OCCLUDING)
+    turned = (near.sight.normals * pixel.sight.normals).sum(-1) < np.cos(np.radians(0.5))
+    lenient = _same_face(near, pixel) & turned & (slant < MESH_EDGE_ON) & mesh
+    turns = mesh | _turns(prober, near, pixel)
+    return np.where((slant < EDGE_ON) & turns | lenient, LIMB, OCCLUDING)
+
+
+def _turns(prober: Prober, near: _End, pixel: _End) -> Flags:
+    """Whether the surface bends a little way in from its edge, towards the middle of the pixel."""
+    u, v = near.u + INWARDS * (pixel.u - near.u), near.v + INWARDS * (pixel.v - near.v)
+    inner = _End(u, v, prober(u, v))
+    bent = 1 - (near.sight.normals * inner.sight.normals).sum(-1)
+    turns: Flags = _same_face(near, inner) & (bent > FLAT)
+    return turns
 
 
 def _crease(prober: Prober, close: tuple[_End, _End], pixels: tuple[_End, _End]) -> NDArray[np.int64]:

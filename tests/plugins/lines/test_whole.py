@@ -4,22 +4,27 @@ from __future__ import annotations
 
 import json
 import xml.etree.ElementTree as ET
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import visint
 from visint.fields import BoundaryKind
+from visint.fields.geometry import depth_from_disparity
+from visint.fields.resampling import region_boundaries
 from visint.module import Context
 from visint_lines.catalogue import KINDS
 from visint_lines.label import Label, LabelInputs, LabelParams
 from visint_lines.measure import Features, FeaturesInputs, FeaturesParams
-from visint_lines.painting import pixels_of
 from visint_lines.parse import Parse, ParseInputs
 
 HERE = Context()
 UNSEEN = range(30)  # run once with the parameters as they are; those were chosen on 1000 to 1041
-NUMBERS = {"limb": 1, "occluding": 2, "convex": 3, "concave": 4, "mark": 5}
+SPEC = spec_from_file_location("truth", Path(__file__).with_name("truth.py"))
+truths = module_from_spec(SPEC)
+SPEC.loader.exec_module(truths)
 GRAPH = """
 visint: 1
 name: drawing
@@ -41,50 +46,59 @@ def interpreted(regions, depth, camera, image=None, blur=0.0, **params):
     return Label(LabelParams(**params)).run(LabelInputs(diagram=measured.diagram, image=image), HERE)
 
 
-def true_edges(truth):
-    """The lab's edges; a plane face seen at a low angle has an edge there, and no limb."""
-    edges = truth.edges.copy()
-    for label in np.unique(truth.regions):
-        normals = truth.normals[truth.regions == label]
-        if np.isfinite(normals).all() and np.linalg.norm(normals - normals.mean(axis=0), axis=1).max() < 1e-3:
-            edges[(edges == 1) & (truth.regions == label)] = 2
-    return edges
+def figures(pairs, depth_of=None, blur=0.0, **params):
+    """(shares of lines, of directions, of types of junctions right; how many lines, junctions) over scenes.
 
-
-def true_kinds(diagram, edges):
-    """What most true edge pixels near each arc are; 0 where there is none."""
-    from scipy.ndimage import distance_transform_edt
-
-    distance, nearest = distance_transform_edt(edges == 0, return_indices=True)
-    label = np.where(distance <= 2.5, edges[tuple(nearest)], 0)
-    found = []
-    for arc in diagram.arcs:
-        points = arc.points[2:-2] if len(arc.points) > 8 else arc.points
-        met = label[pixels_of(points, diagram.size)]
-        met = met[(met > 0) & (met < 6)]
-        found.append(int(np.bincount(met).argmax()) if len(met) else 0)
-    return np.array(found)
-
-
-def shares(pairs, blur=0.0, noise=0.0, **params):
-    """Share of arcs labelled right over scenes, with true depth or with noise of some pixels."""
-    right = []
+    ``depth_of(seed, pair)``: the depth to go by, the true one if left out. Lines without a true edge near them
+    and junctions at the frame do not count; four lines at a point always count as wrong.
+    """
+    lines, directions, types = [], [], []
     for seed, pair in pairs:
-        rng = np.random.default_rng(seed)
-        depth = pair.truth.depth
-        depth = depth * (1 + noise / pair.camera.focal_length * rng.standard_normal(depth.shape))
-        labels = interpreted(
-            pair.truth.regions, depth.astype(np.float32), pair.camera, blur=blur, **params
-        ).labels
-        truth = true_kinds(labels.diagram, true_edges(pair.truth))
-        said = np.array([NUMBERS[KINDS[arc.label]] for arc in labels.arcs])
-        right += (said == truth)[truth > 0].tolist()
-    return float(np.mean(right))
+        depth = pair.truth.depth if depth_of is None else depth_of(seed, pair)
+        labels = interpreted(pair.truth.regions, depth, pair.camera, blur=blur, **params).labels
+        kinds = truths.kinds_of(labels.diagram, pair.truth.edges)
+        nearer = truths.nearer_regions(labels.diagram, pair.truth.depth)
+        for arc, told, kind, near in zip(labels.diagram.arcs, labels.arcs, kinds, nearer, strict=True):
+            said = truths.NUMBERS[KINDS[told.label]]
+            lines += [said == kind] if kind else []
+            if said == kind and told.label[0] in "<>":
+                directions.append((arc.right if told.label[0] == ">" else arc.left) == near)
+        meant = truths.types_of(labels.diagram, kinds, nearer, truths.corners_of(pair.scene))
+        for told, kind in zip(labels.junctions, meant, strict=True):
+            types += [told.type == kind != "M"] if kind else []
+    return np.mean(lines), np.mean(directions), np.mean(types), len(lines), len(types)
+
+
+def noisy(noise):
+    """True depth with Gaussian noise of so many pixels of relative depth."""
+
+    def depth_of(seed, pair):
+        true = pair.truth.depth
+        off = np.random.default_rng(seed).standard_normal(true.shape)
+        return (true * (1 + noise / pair.camera.focal_length * off)).astype(np.float32)
+
+    return depth_of
+
+
+def by_stereo(seed, pair):
+    """The system's own depth: ``stereo.weng``, its smoothness held back at the drawing's lines."""
+    del seed
+    found = visint.run(
+        visint.load(str(Path(__file__).with_name("stereo_by_lines.yaml"))),
+        left=pair.left,
+        right=pair.right,
+        camera=pair.camera,
+        boundaries=region_boundaries(pair.truth.regions),
+    )
+    return depth_from_disparity(found["disparity"], pair.camera)
 
 
 def test_a_few_scenes(lab):
     """A torus and a box, a cylinder, an ellipsoid and more: nine of ten lines right."""
-    assert shares([(seed, lab(seed)) for seed in (1004, 1009, 1013, 1018)]) >= 0.9
+    lines, directions, types, *_ = figures([(seed, lab(seed)) for seed in (1004, 1009, 1013, 1018)])
+    assert lines >= 0.9
+    assert directions >= 0.95
+    assert types >= 0.85
 
 
 def test_a_ball_is_a_limb_and_a_box_has_none(lab):
@@ -122,9 +136,6 @@ def test_as_a_graph_with_its_files(lab, tmp_path):
 @pytest.mark.parametrize("marks", ["checker", "two"])
 def test_marks_are_no_creases(marks):
     """Lines between fields of a checker or two tones: nine of ten are not taken for creases."""
-    from importlib.util import module_from_spec, spec_from_file_location
-    from pathlib import Path
-
     from visint_lab.render.rendering import render
 
     spec = spec_from_file_location("scenes", Path(__file__).with_name("conftest.py"))
@@ -134,17 +145,28 @@ def test_marks_are_no_creases(marks):
     for seed in (1000, 1002, 1009):
         pair = render(scenes.scene(seed, 256, marks), 1)
         labels = interpreted(scenes.marked(pair.truth), pair.truth.depth, pair.camera).labels
-        truth = true_kinds(labels.diagram, true_edges(pair.truth))
+        truth = truths.kinds_of(labels.diagram, pair.truth.edges)
         said += [KINDS[arc.label] for arc, kind in zip(labels.arcs, truth, strict=True) if kind == 5]
     assert len(said) > 3
     assert np.mean([kind in ("convex", "concave") for kind in said]) <= 0.1
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("noise", "least"), [(0.0, 0.93), (1.0, 0.92)])
+@pytest.mark.parametrize(("noise", "least"), [(0.0, (0.93, 0.85)), (1.0, (0.92, 0.8))])
 def test_thirty_unseen_scenes(lab, noise, least):
-    """The figure of the documentation. The aim was 97 %."""
-    assert shares([(seed, lab(seed)) for seed in UNSEEN], noise=noise) >= least
+    """The figures of the documentation, lines and types of junctions. The aims were 97 and 95 %."""
+    found = figures([(seed, lab(seed)) for seed in UNSEEN], noisy(noise) if noise else None)
+    assert found[0] >= least[0]
+    assert found[1] >= 0.98
+    assert found[2] >= least[1]
+
+
+@pytest.mark.slow
+def test_thirty_unseen_scenes_by_their_own_depth(lab):
+    """Depth by stereo alone. The aims were 90 % of lines and 85 % of types of junctions."""
+    found = figures([(seed, lab(seed, samples=3)) for seed in UNSEEN], by_stereo, blur=5.0)
+    assert found[0] >= 0.88
+    assert found[2] >= 0.75
 
 
 def limb_points_of(pair, seed, noise):
@@ -161,7 +183,7 @@ def limb_points_of(pair, seed, noise):
     drawing = Parse().run(ParseInputs(regions=pair.truth.regions), HERE)
     seen = surfaces(depth, drawing.regions, pair.camera, params.window)
     sections = cut(drawing.diagram, seen, _offsets(params.samples, 0.0))
-    edges = true_edges(pair.truth)
+    edges = pair.truth.edges
     distance, nearest = distance_transform_edt(edges == 0, return_indices=True)
     label = np.where(distance <= 2.5, edges[tuple(nearest)], 0)
     spots = np.array(
