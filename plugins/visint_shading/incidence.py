@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
 from pydantic import Field
 
 from visint.fields import IncidenceEvidence
 from visint.module import Context, Module, Params, Ports
-from visint_shading.photometry import ShadingInputs, photometry_of, window_of
+from visint_shading.photometry import ShadingInputs, photometry_in_frame, window_of
 from visint_shading.premises import PREMISES, tell
 
 __all__ = ["IncidenceOf"]
@@ -49,9 +48,9 @@ class IncidenceOf(Module[IncidenceParams, ShadingInputs, IncidenceOutputs]):
 
     def run(self, inputs: ShadingInputs, ctx: Context) -> IncidenceOutputs:
         """Incidence of the image's size."""
-        found = photometry_of(inputs, window_of(self.params.window, inputs.image, ctx.scale))
+        found = photometry_in_frame(inputs, window_of(self.params.window, inputs.image, ctx.scale))
         ctx.check()
         tell(found, ctx)
-        ctx.measure("mean reliability", float(np.mean(found.reliability)))
-        evidence = IncidenceEvidence.of(found.incidence, found.sigma, found.reliability)
+        ctx.measure("mean reliability", float(found.reliability.sum() / inputs.image.size))
+        evidence = found.frame.evidence(IncidenceEvidence, found.incidence, found.sigma, found.reliability)
         return IncidenceOutputs(incidence=evidence)

@@ -12,7 +12,7 @@ from visint.fields import NormalsEvidence, ReliefEvidence
 from visint.module import Context, Module, Params, Ports
 from visint_shading.heights.relief import Relief, relief_of
 from visint_shading.lighting.rays import cosines
-from visint_shading.photometry import Photometry, ShadingInputs, photometry_of, window_of
+from visint_shading.photometry import Photometry, ShadingInputs, photometry_in_frame, window_of
 from visint_shading.premises import PREMISES, tell
 from visint_shading.slope import angle_error
 
@@ -63,14 +63,15 @@ class OliensisDupuis(Module[OliensisDupuisParams, ShadingInputs, OliensisDupuisO
     def run(self, inputs: ShadingInputs, ctx: Context) -> OliensisDupuisOutputs:
         """Relief and normals of the image's size."""
         window = window_of(self.params.window, inputs.image, ctx.scale)
-        found = photometry_of(inputs, window)
+        found = photometry_in_frame(inputs, window)
         ctx.check()
         tell(found, ctx)
         light = found.source
         if light is None:
             return _silence(inputs.image.shape)
         otherwise = 1 if self.params.otherwise == "convex" else -1
-        relief = relief_of(found, light, inputs.depth, otherwise, 2.5 * window)
+        depth = None if inputs.depth is None else found.frame.part(inputs.depth)
+        relief = relief_of(found, light, depth, otherwise, 2.5 * window)
         ctx.measure("singular points", float(relief.singular.bend.size - 1))
         ctx.measure("saddles", float((relief.singular.bend[1:] == 0).sum()))
         return _answer(found, relief)
@@ -90,13 +91,18 @@ def _answer(found: Photometry, relief: Relief) -> OliensisDupuisOutputs:
     apart = _apart(found, relief)
     agreed = _agreed(apart, labels, found.trust.size)
     sigma = angle_error(found.incidence, found.sigma) + 0.05 + 0.5 * apart
-    above = np.abs(relief.depth - np.nanmedian(relief.depth)) if np.isfinite(relief.depth).any() else 0
+    known = relief.depth[np.isfinite(relief.depth)]
+    above = np.abs(relief.depth - (np.median(known) if known.size else 0))
+    whole = found.frame
     return OliensisDupuisOutputs(
-        relief=ReliefEvidence.of(
-            relief.depth, 0.01 * np.abs(relief.depth) + 0.1 * above, agreed * found.trust[labels] * (labels > 0)
+        relief=whole.evidence(
+            ReliefEvidence,
+            relief.depth,
+            0.01 * np.abs(relief.depth) + 0.1 * above,
+            agreed * found.trust[labels] * (labels > 0),
         ),
-        normals=NormalsEvidence.of(relief.normals, sigma, agreed * found.reliability),
-        singular=relief.singular.group > 0,
+        normals=whole.evidence(NormalsEvidence, relief.normals, sigma, agreed * found.reliability),
+        singular=whole.whole(relief.singular.group > 0),
     )
 
 

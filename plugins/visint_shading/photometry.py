@@ -9,15 +9,23 @@ import numpy as np
 from visint.arrays import Array, Boundaries, Confidence, Depth, Image, Mask, Normals, Regions
 from visint.fields import Camera, Light
 from visint.module import Ports
+from visint_shading.brightness.frame import Frame, frame_of
 from visint_shading.brightness.seen import Seen, seen
 from visint_shading.lighting.estimate import LightFit, estimated
-from visint_shading.lighting.rays import cosines, light_directions
+from visint_shading.lighting.rays import cosines, light_directions, usual_depth
 from visint_shading.reflectance.albedo import Albedo, albedo_by_region, given_by_region
 from visint_shading.reflectance.judgement import Agreement, agreement_of, trust_of
 from visint_shading.surface.flat import flat_regions, with_planes
 from visint_shading.surface.orientation import Orientation, from_depth, from_normals
 
-__all__ = ["Photometry", "ShadingInputs", "estimated_light", "photometry_of", "window_of"]
+__all__ = [
+    "Photometry",
+    "ShadingInputs",
+    "estimated_light",
+    "photometry_in_frame",
+    "photometry_of",
+    "window_of",
+]
 
 UNTESTED = 0.3
 """Trust where there is no surface to hold brightness against."""
@@ -48,17 +56,20 @@ class ShadingInputs(Ports):
 class Photometry(NamedTuple):
     """What brightness says, pixel by pixel and region by region.
 
-    ``orientation`` is the map's surface, ``source`` the light and ``light`` unit vectors to it, (3,) or (H, W,
-    3); None if not known. ``incidence`` is what brightness makes of it, NaN where it says nothing, with
-    ``sigma`` and ``reliability``, float32 (H, W). ``trust`` is by label.
+    All arrays (H, W) and ``camera`` are those of ``frame``, the part of the image looked at. ``orientation`` is
+    the map's surface, ``source`` the light and ``light`` unit vectors to it, (3,) or (H, W, 3); None if not
+    known. ``distance`` is how far surfaces usually are. ``incidence`` is what brightness makes of it, NaN where
+    it says nothing, with ``sigma`` and ``reliability``, float32 (H, W). ``trust`` is by label.
     """
 
+    frame: Frame
     camera: Camera
     seen: Seen
     orientation: Orientation | None
     source: Light | None
     light: Array | None
     light_trust: float
+    distance: float
     albedo: Albedo
     agreement: Agreement | None
     trust: Array
@@ -69,11 +80,24 @@ class Photometry(NamedTuple):
 
 def photometry_of(inputs: ShadingInputs, window: float) -> Photometry:
     """Albedo, incidence and trust of ``inputs``; ``window`` is that of the map's normals, pixels."""
-    camera = _camera(inputs)
     view, window = _view(inputs, window)
+    return _photometry(inputs, view, window, Frame.around(inputs.image.shape))
+
+
+def photometry_in_frame(inputs: ShadingInputs, window: float) -> Photometry:
+    """The same of the smallest box that holds all regions: around it brightness says nothing."""
+    view, window = _view(inputs, window)
+    frame = frame_of(view.labels)
+    part = view._replace(labels=frame.part(view.labels), even=frame.part(view.even))
+    return _photometry(inputs, part, window, frame)
+
+
+def _photometry(whole: ShadingInputs, view: Seen, window: float, frame: Frame) -> Photometry:
+    inputs = _part(whole, frame)
+    camera = _camera(inputs)
     surface = _surface(inputs, view, camera, window)
     fit = _light(inputs, view, surface)
-    directions = None if fit is None else light_directions(fit.light, inputs.depth, camera)
+    distance, directions = _directions(whole, inputs, fit)
     ambient = inputs.ambient if inputs.ambient is not None else (fit.ambient if fit else 0.0)
     cosine = None
     if surface is not None and directions is not None:
@@ -84,17 +108,33 @@ def photometry_of(inputs: ShadingInputs, window: float) -> Photometry:
         found = agreement_of(view.even, view.spread, view.labels, cosine, ambient, window)
     trust = _trust(found, albedo, fit)
     return Photometry(
+        frame,
         camera,
         view,
         surface,
         fit.light if fit else None,
         directions,
         fit.trust if fit else 0.0,
+        distance,
         albedo,
         found,
         trust,
         *_incidence(view, albedo, ambient, trust),
     )
+
+
+def _part(whole: ShadingInputs, frame: Frame) -> ShadingInputs:
+    """What is known of the pixels in ``frame``."""
+    arrays = {name: frame.part(value) for name, value in whole if isinstance(value, np.ndarray)}
+    return whole.model_copy(update={**arrays, "camera": frame.camera(_camera(whole))})
+
+
+def _directions(whole: ShadingInputs, part: ShadingInputs, fit: LightFit | None) -> tuple[float, Array | None]:
+    """How far surfaces usually are, in the whole view, and unit vectors from those in ``part`` to the light."""
+    if fit is None:
+        return 0.0, None
+    distance = usual_depth(whole.depth, fit.light, _camera(whole))
+    return distance, light_directions(fit.light, part.depth, _camera(part), distance)
 
 
 def window_of(given: float | None, image: Array, scale: int) -> float:

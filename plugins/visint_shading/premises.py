@@ -24,8 +24,9 @@ def tell(found: Photometry, ctx: Context) -> None:
     tested = found.agreement
     if tested is None:
         return
-    ctx.assumed("lambertian_reflectance", found.trust > 0.3, found.seen.labels)
-    ctx.assumed("piecewise_constant_albedo", (tested.scatter < 0.25) & (tested.grain < 0.15), found.seen.labels)
+    labels = found.frame.whole(found.seen.labels)
+    ctx.assumed("lambertian_reflectance", found.trust > 0.3, labels)
+    ctx.assumed("piecewise_constant_albedo", (tested.scatter < 0.25) & (tested.grain < 0.15), labels)
     ctx.assumed("single_light_source", found.light_trust > 0.3)
     ctx.measure(
         "trusted share of regions", float(np.mean(found.trust[1:] > 0.3)) if found.trust.size > 1 else 0

@@ -8,7 +8,7 @@ from pydantic import Field
 from visint.arrays import Array
 from visint.fields import NormalsEvidence
 from visint.module import Context, Module, Params, Ports
-from visint_shading.photometry import ShadingInputs, photometry_of, window_of
+from visint_shading.photometry import ShadingInputs, photometry_in_frame, window_of
 from visint_shading.premises import PREMISES, tell
 from visint_shading.surface.cone import onto_cone
 
@@ -50,15 +50,15 @@ class Slope(Module[SlopeParams, ShadingInputs, SlopeOutputs]):
 
     def run(self, inputs: ShadingInputs, ctx: Context) -> SlopeOutputs:
         """Normals of the image's size."""
-        found = photometry_of(inputs, window_of(self.params.window, inputs.image, ctx.scale))
+        found = photometry_in_frame(inputs, window_of(self.params.window, inputs.image, ctx.scale))
         ctx.check()
         tell(found, ctx)
         if found.orientation is None or found.light is None:
             return SlopeOutputs(normals=_silence(inputs.image.shape))
         normals, clear = onto_cone(found.orientation.normals, found.light, found.incidence)
         sigma = np.sqrt(angle_error(found.incidence, found.sigma) ** 2 + _astray(found.incidence, clear) ** 2)
-        ctx.measure("mean reliability", float(np.mean(found.reliability)))
-        return SlopeOutputs(normals=NormalsEvidence.of(normals, sigma, found.reliability))
+        ctx.measure("mean reliability", float(found.reliability.sum() / inputs.image.size))
+        return SlopeOutputs(normals=found.frame.evidence(NormalsEvidence, normals, sigma, found.reliability))
 
 
 def _silence(shape: tuple[int, ...]) -> NormalsEvidence:

@@ -9,11 +9,10 @@ import numpy as np
 from visint.arrays import Array
 from visint.fields import Camera, Light
 from visint.fields.geometry import pixel_grid, slopes_from_depth
-from visint_shading.heights.frame import frame_of
 from visint_shading.heights.gradients import conics, square_to_light
 from visint_shading.heights.propagation import propagated
 from visint_shading.heights.singular import Singular, bends_of, singular_points
-from visint_shading.lighting.rays import cosines, usual_depth
+from visint_shading.lighting.rays import cosines
 from visint_shading.photometry import Photometry
 from visint_shading.surface.cone import onto_cone
 
@@ -34,24 +33,13 @@ class Relief(NamedTuple):
 def relief_of(found: Photometry, light: Light, depth: Array | None, otherwise: int, reach: float) -> Relief:
     """Depth of the surfaces in view, as ``found`` sees them under ``light``.
 
-    ``depth`` is the map's: it gives heights at singular points and says how the surface bends there, within
-    ``reach`` pixels. Without it every point is as high as every other and bends as ``otherwise`` says.
+    ``depth`` is the map's in the same frame: it gives heights at singular points and says how the surface bends
+    there, within ``reach`` pixels. Without it every point is as high as every other and bends as ``otherwise``
+    says.
     """
-    frame = frame_of(found.seen.labels)
-    distance = usual_depth(depth, light, found.camera)
-    part = _relief(
-        frame.of(found), light, None if depth is None else frame.part(depth), distance, otherwise, reach
-    )
-    singular = part.singular._replace(group=frame.whole(part.singular.group))
-    return Relief(frame.whole(part.depth), frame.whole(part.normals), singular)
-
-
-def _relief(
-    found: Photometry, light: Light, depth: Array | None, distance: float, otherwise: int, reach: float
-) -> Relief:
     assert found.light is not None
     labels, camera = found.seen.labels, found.camera
-    level = square_to_light(light, camera, distance)
+    level = square_to_light(light, camera, found.distance)
     usable = np.where(np.isfinite(level) & np.isfinite(found.incidence), labels, 0).astype(np.int32)
     group, label = singular_points(found.incidence, _noise(found), usable)
     height, bend = _known(found, depth, level, group, reach)

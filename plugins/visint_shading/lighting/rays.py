@@ -11,17 +11,18 @@ from visint.fields.geometry import pixel_grid
 __all__ = ["cosines", "light_directions", "usual_depth"]
 
 
-def light_directions(light: Light, depth: Array | None, camera: Camera) -> Array:
+def light_directions(light: Light, depth: Array | None, camera: Camera, usual: float) -> Array:
     """Unit vectors from the surface to the light, float32 (H, W, 3).
 
-    A point light needs positions: unknown depth is taken as :func:`usual_depth`.
+    A point light needs positions: unknown depth is taken as ``usual``.
     """
     from visint_shading import _kernels
 
     vector = np.asarray(light.vector, np.float32)
-    usual = np.float32(usual_depth(depth, light, camera))
     with np.errstate(invalid="ignore"):
-        place = np.full(camera.size, usual) if depth is None else np.where(depth > 0, depth, usual)
+        place = np.full(camera.size, np.float32(usual))
+        if depth is not None:
+            place = np.where(depth > 0, depth, np.float32(usual))
     found = np.empty((*place.shape, 3), np.float32)
     across, down = (grid.ravel() for grid in pixel_grid(camera))
     near = light.place == "point"
@@ -34,9 +35,9 @@ def usual_depth(depth: Array | None, light: Light, camera: Camera) -> float:
     or as far as the light is away if that is more.
     """
     if depth is not None:
-        known = depth[np.isfinite(depth) & (depth > 0)]
+        known = np.flatnonzero((depth > 0) & (depth < np.inf))
         if known.size:
-            return float(np.median(known[::7]))
+            return float(np.median(depth.ravel()[known[::7]]))
     shift = (camera.middle_disparity or 0.0) + camera.doffs
     if shift > 0:
         return camera.focal_length * camera.baseline / shift
