@@ -8,11 +8,11 @@ All arrays are C-contiguous and read-only unless named ``out``; labels are int32
 import numpy as np
 from numba import njit
 
-__all__ = ["agreement_sums", "conics", "cosines", "directions", "evened", "fitted", "heights"]
-__all__ += ["normals_of_slopes", "planes", "relative_slopes", "turned"]
+__all__ = ["agreement_sums", "conics", "cosines", "directions", "evened", "fine_responses", "fitted"]
+__all__ += ["bends", "heights", "normals_of_slopes", "planes", "relative_slopes", "turned"]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def evened(joined, decay, out):
     """Recursive mean along columns, down and up, that stops where ``joined`` is 0.
 
@@ -33,7 +33,74 @@ def evened(joined, decay, out):
                 here[x] += decay * together[x] * (below[x] - here[x])
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
+def fine_responses(image, out):
+    """Sizes of the response to the outer product of (1, −2, 1) with itself, where all nine lie inside (0, 1).
+
+    ``out`` float32 (H W,); how many there are is returned.
+    """
+    rows, columns = image.shape
+    two, four = np.float32(2), np.float32(4)  # integers would make it float64
+    count = 0
+    for y in range(1, rows - 1):
+        a, b, c = image[y - 1], image[y], image[y + 1]
+        for x in range(1, columns - 1):
+            low = min(a[x - 1], a[x], a[x + 1], b[x - 1], b[x], b[x + 1], c[x - 1], c[x], c[x + 1])
+            high = max(a[x - 1], a[x], a[x + 1], b[x - 1], b[x], b[x + 1], c[x - 1], c[x], c[x + 1])
+            total = a[x - 1] - two * a[x] + a[x + 1] - two * b[x - 1] + four * b[x] - two * b[x + 1]
+            response = abs(total + c[x - 1] - two * c[x] + c[x + 1])
+            out[count] = response
+            if low > 0.0 and high < 1.0 and response < 1e9:
+                count += 1
+    return count
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def bends(labels, slopes, middles, reach, out):
+    """Sums for how ``slopes`` (H, W, 2) change around each of ``middles`` (G, 2), rows and columns.
+
+    Over pixels of the middle's region within ``reach``. ``out`` float64 (G, 10): pixels, means of column and
+    row, second moments about them (columns, mixed, rows), and those of columns and rows with either slope.
+    """
+    rows, columns = labels.shape
+    for g in range(middles.shape[0]):
+        s = out[g]
+        s[:] = 0.0
+        cy, cx = middles[g, 0], middles[g, 1]
+        label = labels[int(cy), int(cx)]
+        top, left = max(0, int(cy - reach)), max(0, int(cx - reach))
+        bottom, right = min(rows, int(cy + reach) + 2), min(columns, int(cx + reach) + 2)
+        p0, q0 = 0.0, 0.0
+        for y in range(top, bottom):
+            for x in range(left, right):
+                p, q = slopes[y, x, 0], slopes[y, x, 1]
+                if labels[y, x] != label or not np.isfinite(p + q):
+                    continue
+                u, v = x - cx, y - cy
+                s[0] += 1.0
+                s[1] += u
+                s[2] += v
+                s[3] += u * u
+                s[4] += u * v
+                s[5] += v * v
+                s[6] += u * p
+                s[7] += v * p
+                s[8] += u * q
+                s[9] += v * q
+                p0 += p
+                q0 += q
+        if s[0] > 0.0:
+            u, v = s[1] / s[0], s[2] / s[0]
+            s[3] -= u * s[1]
+            s[4] -= u * s[2]
+            s[5] -= v * s[2]
+            s[6] -= u * p0
+            s[7] -= v * p0
+            s[8] -= u * q0
+            s[9] -= v * q0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def directions(vector, near, depth, across, down, focal, out):
     """Unit vectors from the surface at ``depth`` to a light at the point ``vector`` (``near``), or so far away.
 
@@ -53,7 +120,7 @@ def directions(vector, near, depth, across, down, focal, out):
                 out[y, x, 0], out[y, x, 1], out[y, x, 2] = vector[0], vector[1], vector[2]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def normals_of_slopes(slopes, across, down, focal, out):
     """n ∝ (f p, f q, −(1 + x p + y q)) of slopes (2, H, W) of ln Z a pixel; ``out`` float32 (H, W, 3)."""
     rows, columns = slopes.shape[1:]
@@ -68,7 +135,7 @@ def normals_of_slopes(slopes, across, down, focal, out):
             out[y, x, 0], out[y, x, 1], out[y, x, 2] = a * size, b * size, c * size
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def cosines(normals, light, out):
     """n·l: (H, W, 3) and (H, W, 3) to float32 (H, W)."""
     rows, columns = out.shape
@@ -81,7 +148,7 @@ def cosines(normals, light, out):
             )
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def turned(normals, light, cosine, out, clear):
     """Normals turned in the plane they span with the light until their cosine is ``cosine``.
 
@@ -106,9 +173,13 @@ def turned(normals, light, cosine, out, clear):
             out[y, x, 0], out[y, x, 1], out[y, x, 2] = a * size, b * size, c * size
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def conics(cosine, light, across, down, focal, margin, out):
-    """A, B, C, D, E of the ellipse of gradients at each pixel: see ``heights.gradients``; ``out`` (5, H, W)."""
+    """The ellipse of gradients at each pixel, see ``heights.gradients``, and the steps it allows.
+
+    ``out`` (H, W, 11): A, B, C, D, E, its centre (m, n), half its widths along columns and rows, and the
+    inverses of A + 2B + C and A − 2B + C.
+    """
     rows, columns = cosine.shape
     for y in range(rows):
         v = down[y]
@@ -123,14 +194,21 @@ def conics(cosine, light, across, down, focal, margin, out):
             squared = c * c if c > 0.0 else 0.0
             squared = min(max(squared, min(oblique + margin, 0.98)), 1.0 - 1e-6)
             scale = 1.0 / (size * size * (1.0 - squared))
-            out[0, y, x] = (squared * (focal * focal + u * u) - a * a) * scale
-            out[1, y, x] = (squared * u * v - a * b) * scale
-            out[2, y, x] = (squared * (focal * focal + v * v) - b * b) * scale
-            out[3, y, x] = -a / size
-            out[4, y, x] = -b / size
+            aa = (squared * (focal * focal + u * u) - a * a) * scale
+            ab = (squared * u * v - a * b) * scale
+            bb = (squared * (focal * focal + v * v) - b * b) * scale
+            d, e = -a / size, -b / size
+            det = aa * bb - ab * ab
+            m, n = (ab * e - bb * d) / det, (ab * d - aa * e) / det
+            wide = (1.0 + aa * m * m + 2 * ab * m * n + bb * n * n) / det
+            here = out[y, x]
+            here[0], here[1], here[2], here[3], here[4] = aa, ab, bb, d, e
+            here[5], here[6] = m, n
+            here[7], here[8] = np.sqrt(max(wide * bb, 0.0)), np.sqrt(max(wide * aa, 0.0))
+            here[9], here[10] = 1.0 / (aa + 2 * ab + bb), 1.0 / (aa - 2 * ab + bb)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def planes(nearness, labels, flat, tolerance, rounds, sums, out):
     """The plane nearness = a u + b v + c of each region that ``flat`` names, by reweighted least squares.
 
@@ -183,7 +261,7 @@ def planes(nearness, labels, flat, tolerance, rounds, sums, out):
             o[3] = 1.0
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def relative_slopes(nearness, weight, labels, out):
     """Slopes of ln Z a pixel from ``nearness`` 1/Z (NaN unknown), inside regions only.
 
@@ -217,7 +295,7 @@ def relative_slopes(nearness, weight, labels, out):
                 out[0, y, x] = out[1, y, x] = 0.0
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def fitted(brightness, cosine, weight, labels, tolerance, rounds, out):
     """Albedo a region by robust regression of brightness on ``cosine`` through the origin.
 
@@ -248,7 +326,7 @@ def fitted(brightness, cosine, weight, labels, tolerance, rounds, out):
                 out[label] = top[label] / bottom[label]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def agreement_sums(even, wide, cosine, shade, labels, least, out):
     """Sums a region for the test of the model, over pixels whose ``cosine`` is at least ``least``.
 
@@ -280,7 +358,7 @@ def agreement_sums(even, wide, cosine, shade, labels, least, out):
             row[8] += d * d
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def heights(conic, labels, seeds, tolerance, rounds, cost, sign):
     """Least cost from the seeds, each pixel's gradient lying on its conic; fast sweeping of right triangles.
 
@@ -290,13 +368,18 @@ def heights(conic, labels, seeds, tolerance, rounds, cost, sign):
     the two straight steps. Where the surface bends towards the viewer costs are heights the other way round:
     the conic is then mirrored (D and E change sign).
 
-    Parameters: ``conic`` float32 (5, H, W): A, B, C, D, E. ``seeds`` int8 (H, W): +1 convex, −1 concave, 0 no
-    seed. ``cost`` float32 (H, W), changed: the seeds' own at the seeds, large elsewhere. ``sign`` int8 (H, W),
-    changed: which kind of seed a pixel was reached from; 0 not reached. Ends when no cost falls by more than
-    ``tolerance``, or after ``rounds`` rounds of four sweeps.
+    Parameters: ``conic`` float64 (H, W, 11) as ``conics`` leaves it. ``seeds`` int8 (H, W): +1 convex, −1
+    concave, 0 no seed. ``cost`` float64 (H, W), changed: the seeds' own at the seeds, large elsewhere. ``sign``
+    int8 (H, W), changed: which kind of seed a pixel was reached from; 0 not reached. Ends when no cost falls by
+    more than ``tolerance``, or after ``rounds`` rounds of four sweeps.
     """
     rows, columns = labels.shape
-    fresh = np.zeros(rows, np.int64)  # the sweep in which a row last changed
+    fresh = np.ones(rows, np.int64)  # the sweep in which a row last changed, and a pixel (one wider all around)
+    last = np.full((rows + 2, columns + 2), -4, np.int32)
+    for y in range(rows):
+        for x in range(columns):
+            if sign[y, x] != 0:
+                last[y + 1, x + 1] = 1
     sweep = 0
     for _ in range(rounds):
         changed = 0.0
@@ -308,9 +391,12 @@ def heights(conic, labels, seeds, tolerance, rounds, cost, sign):
             x0, x1 = (0, columns) if dx > 0 else (columns - 1, -1)
             for y in range(y0, y1, dy):
                 before = fresh[y - dy] if 0 <= y - dy < rows else 0
-                if sweep - max(fresh[y], before) > 4:
-                    continue  # the last sweep this way has seen all there is
+                if sweep - max(fresh[y], before) >= 4:
+                    continue
                 for x in range(x0, x1, dx):
+                    # the last sweep this way has seen neighbours that have not changed since
+                    if sweep - max(last[y + 1, x + 1 - dx], last[y + 1 - dy, x + 1]) >= 4:
+                        continue
                     label = labels[y, x]
                     if label == 0 or seeds[y, x] != 0:
                         continue
@@ -320,43 +406,33 @@ def heights(conic, labels, seeds, tolerance, rounds, cost, sign):
                     # steps cost something: only a cheaper neighbour can better a pixel
                     if not ((across and cost[y, x - dx] < best) or (down and cost[y - dy, x] < best)):
                         continue
-                    a, b, c = conic[0, y, x], conic[1, y, x], conic[2, y, x]
+                    here = conic[y, x]
                     kind = sign[y, x]
-                    det = a * c - b * b
                     if across:
                         s = sign[y, x - dx]
-                        d, e = s * conic[3, y, x], s * conic[4, y, x]
                         # support of the ellipse along the step: centre plus half width
-                        m = (b * e - c * d) / det
-                        n = (b * d - a * e) / det
-                        size = 1.0 + a * m * m + 2 * b * m * n + c * n * n
-                        step = dx * m + np.sqrt(max(size * c / det, 0.0))
+                        step = dx * s * here[5] + here[7]
                         value = cost[y, x - dx] + max(step, 0.0)
                         if value < best:
                             best, kind = value, s
                     if down:
                         s = sign[y - dy, x]
-                        d, e = s * conic[3, y, x], s * conic[4, y, x]
-                        m = (b * e - c * d) / det
-                        n = (b * d - a * e) / det
-                        size = 1.0 + a * m * m + 2 * b * m * n + c * n * n
-                        step = dy * n + np.sqrt(max(size * a / det, 0.0))
+                        step = dy * s * here[6] + here[8]
                         value = cost[y - dy, x] + max(step, 0.0)
                         if value < best:
                             best, kind = value, s
                     if across and down and sign[y, x - dx] == sign[y - dy, x]:
                         s = sign[y, x - dx]
-                        d, e = s * conic[3, y, x], s * conic[4, y, x]
+                        a, c = here[0], here[2]
                         u, v = cost[y, x - dx], cost[y - dy, x]
-                        bb = b * dx * dy
-                        dd, ee = d * dx, e * dy
+                        bb = here[1] * dx * dy
+                        dd, ee = s * here[3] * dx, s * here[4] * dy
                         # p = dx (t - u), q = dy (t - v): a quadratic in t
-                        qa = a + 2 * bb + c
                         qb = -(a * u + bb * (u + v) + c * v) + dd + ee
                         qc = a * u * u + 2 * bb * u * v + c * v * v - 2 * dd * u - 2 * ee * v - 1.0
-                        disc = qb * qb - qa * qc
+                        disc = qb * qb - (a + 2 * bb + c) * qc
                         if disc >= 0.0:
-                            t = (-qb + np.sqrt(disc)) / qa
+                            t = (np.sqrt(disc) - qb) * here[9 if dx == dy else 10]
                             along = a * (t - u) + bb * (t - v) + dd
                             beside = bb * (t - u) + c * (t - v) + ee
                             if along >= 0.0 and beside >= 0.0 and t < best:
@@ -365,6 +441,6 @@ def heights(conic, labels, seeds, tolerance, rounds, cost, sign):
                         changed = max(changed, cost[y, x] - best)
                         cost[y, x] = best
                         sign[y, x] = kind
-                        fresh[y] = sweep
+                        fresh[y] = last[y + 1, x + 1] = sweep
         if changed <= tolerance:
             break

@@ -8,7 +8,7 @@ import numpy as np
 
 from visint.arrays import Array
 
-__all__ = ["evened", "gain"]
+__all__ = ["evened", "evened_inside", "gain"]
 
 ROUNDS = 2
 
@@ -29,9 +29,24 @@ def evened(values: Array, weight: Array, labels: Array, length: float) -> tuple[
     -------
     float32 (C, H, W), NaN where no weight is near; float32 (H, W).
     """
+    both = _spread(np.concatenate([values, weight[None]]).astype(np.float32, copy=False), labels, length)
+    sure = both[-1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(sure > 1e-4, both[:-1] / sure, np.float32(np.nan)), sure
+
+
+def evened_inside(values: Array, labels: Array, length: float) -> Array:
+    """The same of ``values`` float32 (H, W) that are known at every label but 0; NaN at label 0."""
+    inside = labels > 0
+    mean: Array = _spread(np.where(inside, values, np.float32(0))[None], labels, length)[0]
+    mean[~inside] = np.nan
+    return mean
+
+
+def _spread(both: Array, labels: Array, length: float) -> Array:
+    """``both`` float32 (C, H, W) or what is made of it in place: every plane's means inside regions."""
     from visint_shading import _kernels
 
-    both = np.concatenate([values, weight[None]]).astype(np.float32)
     if length >= 0.3 and min(labels.shape) > 0:
         down, across = _joined(labels), _joined(labels.T)
         for decay in _decays(length):  # along rows as along columns of the transposed: there pixels go abreast
@@ -39,9 +54,7 @@ def evened(values: Array, weight: Array, labels: Array, length: float) -> tuple[
             both = _turned(both)
             _kernels.evened(across, decay, both)
             both = _turned(both)
-    sure = both[-1]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(sure > 1e-4, both[:-1] / sure, np.float32(np.nan)), sure
+    return both
 
 
 def _turned(planes: Array) -> Array:

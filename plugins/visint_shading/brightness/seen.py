@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from visint.arrays import Array
-from visint_shading.brightness.evening import evened, gain
+from visint_shading.brightness.evening import evened_inside, gain
 from visint_shading.brightness.noise import noise_of
 from visint_shading.brightness.patches import patches
 
@@ -47,10 +47,9 @@ def seen(image: Array, usable: Array, regions: Array | None, boundaries: Array |
         known = usable & (image < SATURATED)
     labels = patches(known, regions, boundaries)
     length = 0.0 if noise < 1e-3 else (0.7 + 28 * noise) * span
-    weight = (labels > 0).astype(np.float32)
-    plain = np.where(labels > 0, image, 0).astype(np.float32)
-    even = evened(plain[None], weight, labels, length)[0][0]
+    even = evened_inside(image, labels, length)
     left = noise * gain(length)
     with np.errstate(invalid="ignore"):
-        labels = np.where(even > 0.02 + noise, labels, 0).astype(np.int32)
-    return Seen(labels, np.where(labels > 0, even, np.float32(np.nan)), noise, left, length)
+        bright = even > 0.02 + noise
+    even[~bright] = np.nan
+    return Seen(labels * bright, even, noise, left, length)

@@ -20,11 +20,11 @@ STEEPEST = 0.03
 
 
 def conics(cosine: Array, light: Array, camera: Camera) -> Array:
-    """float64 (5, H, W): A, B, C, D, E at each pixel, from ``cosine`` (H, W) and ``light`` (H, W, 3)."""
+    """A to E and the steps they allow, float64 (H, W, 11), from ``cosine`` (H, W) and ``light`` (H, W, 3)."""
     from visint_shading import _kernels
 
     across, down = pixel_grid(camera)
-    found = np.empty((5, *cosine.shape))
+    found = np.empty((*cosine.shape, 11))
     _kernels.conics(cosine, light, across.ravel(), down.ravel(), camera.focal_length, STEEPEST, found)
     return found
 

@@ -59,25 +59,26 @@ def bends_of(group: Array, labels: Array, slopes: Array, reach: float) -> Array:
     From how ``slopes`` (H, W, 2) of ln Z − w₀ change around each group, within ``reach`` pixels of its middle
     and in its region. A principal bend below a fifth of the other counts as none (a cylinder).
     """
-    found = np.zeros(int(group.max(initial=0)) + 1, np.int8)
-    for number in range(1, found.size):
-        rows, columns = np.nonzero(group == number)
-        found[number] = _bend(labels, slopes, (float(np.median(rows)), float(np.median(columns))), reach)
-    return found
+    from visint_shading import _kernels
+
+    middles = _middles(group)
+    sums = np.empty((len(middles), 10))
+    _kernels.bends(labels, slopes, middles, float(reach), sums)
+    spread = sums[:, [3, 4, 4, 5]].reshape(-1, 2, 2)
+    changes = np.linalg.pinv(spread, hermitian=True) @ sums[:, [6, 8, 7, 9]].reshape(-1, 2, 2)
+    principal = np.linalg.eigvalsh((changes + changes.swapaxes(1, 2)) / 2)
+    low, high = np.abs(principal).min(axis=1), np.abs(principal).max(axis=1)
+    saddle = (principal[:, 0] * principal[:, 1] < 0) & (low > 0.2 * high)
+    larger = np.where(np.abs(principal[:, 1]) >= np.abs(principal[:, 0]), principal[:, 1], principal[:, 0])
+    bend = np.where(saddle | (sums[:, 0] < 12), 0, np.sign(larger))
+    return np.concatenate([[0], bend]).astype(np.int8)
 
 
-def _bend(labels: Array, slopes: Array, middle: tuple[float, float], reach: float) -> int:
-    y, x = middle
-    top, left = max(0, int(y - reach)), max(0, int(x - reach))
-    box = np.s_[top : int(y + reach) + 2, left : int(x + reach) + 2]
-    near = labels[box] == labels[int(y), int(x)]
-    near &= np.isfinite(slopes[box]).all(axis=-1)
-    if near.sum() < 12:
-        return 0
-    rows, columns = np.nonzero(near)
-    places = np.column_stack([columns - columns.mean(), rows - rows.mean(), np.ones(rows.size)])
-    changes, *_ = np.linalg.lstsq(places, slopes[box][near].astype(np.float64), rcond=None)
-    small, large = sorted(np.linalg.eigvalsh((changes[:2] + changes[:2].T) / 2), key=abs)
-    if small * large < 0 and abs(small) > 0.2 * abs(large):
-        return 0
-    return int(np.sign(large))
+def _middles(group: Array) -> Array:
+    """Median row and column of each group, float64 (G, 2)."""
+    places = np.nonzero(group)
+    number = group[places]
+    size = np.bincount(number, minlength=1)[1:]
+    start = np.cumsum(size) - size
+    sides = (place[np.lexsort((place, number))] for place in places)
+    return np.column_stack([(side[start + (size - 1) // 2] + side[start + size // 2]) / 2 for side in sides])

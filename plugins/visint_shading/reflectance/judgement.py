@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from visint.arrays import Array
-from visint_shading.brightness.evening import evened
+from visint_shading.brightness.evening import evened_inside
 
 __all__ = ["Agreement", "agreement_of", "trust_of"]
 
@@ -43,8 +43,7 @@ def agreement_of(
     """Brightness ``even`` against ``cosine`` (H, W), which is NaN unknown and was evened over ``window`` px."""
     from visint_shading import _kernels
 
-    weight = (labels > 0).astype(np.float32)
-    wide = evened(np.where(labels > 0, even, 0)[None], weight, labels, window)[0][0]
+    wide = evened_inside(even, labels, window)
     sums = np.zeros((int(labels.max(initial=0)) + 1, 9))
     _kernels.agreement_sums(
         even, wide, cosine, cosine + np.float32(ambient), labels, np.float32(LEAST_COSINE), sums
