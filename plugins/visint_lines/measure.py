@@ -31,6 +31,10 @@ HIDES = 2.0
 """Pixels of depth by which a limb is nearer than what it hides."""
 
 
+SHOWN = 0.1
+"""Share of the points that look like limbs of what is behind, up to which surfaces count as opaque."""
+
+
 class FeaturesParams(Params):
     """Parameters of ``lines.features``.
 
@@ -105,6 +109,7 @@ class Features(Module[FeaturesParams, FeaturesInputs, FeaturesOutputs]):
         sections = cut(inputs.diagram, seen, _offsets(max(p.across, p.samples), blur))
         ctx.check()
         found = _observed(sections, p, blur, _flat(inputs.diagram, sections.arc, seen))
+        ctx.assumed("opacity", found.hides)
         diagram, owner = split(inputs.diagram, sections.arc, sections.point, found.points, blur)
         diagram = replace(
             diagram,
@@ -123,7 +128,9 @@ def _offsets(count: int, blur: float) -> Array:
 
 
 class _Observed(NamedTuple):
-    """Section by section: the profile; whether either side (N, 2) is a limb's and can tell; the line itself."""
+    """Section by section: the profile; whether either side (N, 2) is a limb's and can tell; the line itself;
+    whether both sides reach beyond the blur. And whether limbs hide what lies behind them.
+    """
 
     profile: Profile
     limb: Array
@@ -131,6 +138,7 @@ class _Observed(NamedTuple):
     points: LimbPoints
     wide: Array
     off: float
+    hides: bool
 
 
 def _flat(diagram: Diagram, arc: Array, seen: Surfaces) -> Array:
@@ -147,13 +155,15 @@ def _observed(sections: Sections, p: FeaturesParams, blur: float, flat: Array) -
     told = profile(faces.depth, sections.offset, faces.there)
     least = HIDES + off * told.steepness
     nearer_by = np.stack([told.gap, -told.gap], axis=-1)
+    shown = limb & told.seen[:, None] & (nearer_by < -least[:, None])
+    hides = float(shown.sum()) <= SHOWN * max(1.0, float(limb.sum()))
     limb &= ~(told.seen[:, None] & (nearer_by < least[:, None]))  # a limb hides what is behind it
     limb &= ~flat
     wide = sections.wide(near)
     asked = (asked | flat) & wide
     limb &= asked
     line = _of_line(LimbPoints(limb, asked, edge), told)
-    return _Observed(told, limb, asked, line, wide.all(axis=1), off)
+    return _Observed(told, limb, asked, line, np.asarray(wide.all(axis=1)), off, hides)
 
 
 def _of_line(sides: LimbPoints, told: Profile) -> LimbPoints:
