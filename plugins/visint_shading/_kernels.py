@@ -427,14 +427,15 @@ def heights(conic, labels, seeds, tolerance, rounds, cost, sign):
                         u, v = cost[y, x - dx], cost[y - dy, x]
                         bb = here[1] * dx * dy
                         dd, ee = s * here[3] * dx, s * here[4] * dy
-                        # p = dx (t - u), q = dy (t - v): a quadratic in t
-                        qb = -(a * u + bb * (u + v) + c * v) + dd + ee
-                        qc = a * u * u + 2 * bb * u * v + c * v * v - 2 * dd * u - 2 * ee * v - 1.0
-                        disc = qb * qb - (a + 2 * bb + c) * qc
+                        # p = dx (t - u), q = dy (t - v): a quadratic in t - u
+                        apart = v - u
+                        middle = (bb + c) * apart - dd - ee
+                        disc = middle * middle - (a + 2 * bb + c) * ((c * apart - 2 * ee) * apart - 1.0)
                         if disc >= 0.0:
-                            t = (np.sqrt(disc) - qb) * here[9 if dx == dy else 10]
-                            along = a * (t - u) + bb * (t - v) + dd
-                            beside = bb * (t - u) + c * (t - v) + ee
+                            rise = (middle + np.sqrt(disc)) * here[9 if dx == dy else 10]
+                            along = a * rise + bb * (rise - apart) + dd
+                            beside = bb * rise + c * (rise - apart) + ee
+                            t = u + rise
                             if along >= 0.0 and beside >= 0.0 and t < best:
                                 best, kind = t, s
                     if best < cost[y, x]:

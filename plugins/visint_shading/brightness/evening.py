@@ -48,7 +48,7 @@ def _spread(both: Array, labels: Array, length: float) -> Array:
     from visint_shading import _kernels
 
     if length >= 0.3 and min(labels.shape) > 0:
-        down, across = _joined(labels), _joined(labels.T)
+        down, across = _joined(labels), _joined(_turned(labels[None])[0])
         for decay in _decays(length):  # along rows as along columns of the transposed: there pixels go abreast
             _kernels.evened(down, decay, both)
             both = _turned(both)
@@ -58,10 +58,10 @@ def _spread(both: Array, labels: Array, length: float) -> Array:
 
 
 def _turned(planes: Array) -> Array:
-    """(C, W, H) of (C, H, W)."""
+    """(C, W, H) of (C, H, W), of 4 bytes each."""
     import cv2
 
-    found = np.empty((planes.shape[0], planes.shape[2], planes.shape[1]), np.float32)
+    found = np.empty((planes.shape[0], planes.shape[2], planes.shape[1]), planes.dtype)
     for plane, into in zip(planes, found, strict=True):
         cv2.transpose(plane, dst=into)
     return found

@@ -8,7 +8,7 @@ import numpy as np
 
 from visint.arrays import Array
 
-__all__ = ["Albedo", "albedo_by_region", "given_by_region", "percentile_by_region"]
+__all__ = ["Albedo", "albedo_by_region", "given_by_region", "percentile_by_region", "percentiles_by_region"]
 
 FACING = 0.93
 """Cosine of incidence (21°) from which a region's brightest twentieth counts as facing the light."""
@@ -30,14 +30,19 @@ def percentile_by_region(values: Array, labels: Array, share: float) -> Array:
 
     ``values`` are float32 (H, W) in [0, 1]; exact to 1/1024.
     """
+    return percentiles_by_region(values, labels, share)[0]
+
+
+def percentiles_by_region(values: Array, labels: Array, *shares: float) -> list[Array]:
+    """The same for each of ``shares``."""
     count = int(labels.max(initial=0)) + 1
     inside = labels > 0
     step = np.clip(values[inside] * STEPS, 0, STEPS - 1).astype(np.int64)
     table = np.bincount(labels[inside] * np.int64(STEPS) + step, minlength=count * STEPS).reshape(count, STEPS)
     below = np.cumsum(table, axis=1)
     total = below[:, -1]
-    found = (below < share * total[:, None]).sum(axis=1)
-    return np.where(total > 0, (found + 0.5) / STEPS, 0.0)
+    found = ((below < share * total[:, None]).sum(axis=1) for share in shares)
+    return [np.where(total > 0, (steps + 0.5) / STEPS, 0.0) for steps in found]
 
 
 def albedo_by_region(even: Array, labels: Array, cosine: Array | None, spread: float, ambient: float) -> Albedo:
@@ -48,12 +53,12 @@ def albedo_by_region(even: Array, labels: Array, cosine: Array | None, spread: f
     brightest pixels are taken to face the light. ``spread`` is the noise of ``even``.
     """
     count = int(labels.max(initial=0))
-    brightest = percentile_by_region(even, labels, 0.99) - 1.5 * spread
-    maximum = np.maximum(brightest, 0) / (1 + ambient)
+    bright, brightest = percentiles_by_region(even, labels, 0.95, 0.99)
+    maximum = np.maximum(brightest - 1.5 * spread, 0) / (1 + ambient)
     if cosine is None:
         return Albedo(maximum, np.full(count + 1, 0.1), maximum > 0)
     regressed = _regressed(even, labels, cosine, ambient, count)
-    leans = _cosine_of_brightest(even, labels, cosine, count)
+    leans = _cosine_of_brightest(even, labels, cosine, bright)
     faces = (leans > FACING) & (maximum > 0)
     value = np.where(faces, maximum / np.clip(leans / FACED, 0.9, 1), regressed)
     return Albedo(value, np.where(faces, 0.02, 0.05), faces)
@@ -69,13 +74,12 @@ def _regressed(even: Array, labels: Array, cosine: Array, ambient: float, count:
     return found
 
 
-def _cosine_of_brightest(even: Array, labels: Array, cosine: Array, count: int) -> Array:
-    """float64 (N + 1,): the map's mean cosine over the brightest twentieth of each region; 0 unknown."""
-    bright = percentile_by_region(even, labels, 0.95)
+def _cosine_of_brightest(even: Array, labels: Array, cosine: Array, bright: Array) -> Array:
+    """float64 (N + 1,): the map's mean cosine over what is as ``bright`` in each region; 0 unknown."""
     top = (labels > 0) & np.isfinite(cosine)
     top &= even >= bright[np.where(top, labels, 0)]
-    sums = np.bincount(labels[top], cosine[top], minlength=count + 1)
-    members = np.bincount(labels[top], minlength=count + 1)
+    sums = np.bincount(labels[top], cosine[top], minlength=bright.size)
+    members = np.bincount(labels[top], minlength=bright.size)
     return np.asarray(sums / np.maximum(members, 1))
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from visint.arrays import Array
 from visint.fields import Camera
-from visint_shading.reflectance.albedo import percentile_by_region
+from visint_shading.reflectance.albedo import percentiles_by_region
 from visint_shading.surface.orientation import Orientation
 
 __all__ = ["flat_regions", "with_planes"]
@@ -21,7 +21,7 @@ def flat_regions(even: Array, labels: Array, spread: float) -> Array:
     Four fifths of the pixels lie within 6 % and 2.5 standard deviations of the noise left in ``even``.
     """
     value = np.clip(np.nan_to_num(even), 0, 1)
-    low, middle, high = (percentile_by_region(value, labels, share) for share in (0.1, 0.5, 0.9))
+    low, middle, high = percentiles_by_region(value, labels, 0.1, 0.5, 0.9)
     found = high - low < CONTRAST * middle + 2.5 * spread
     found[0] = False
     return np.asarray(found)
