@@ -53,9 +53,10 @@ class JointInputs(Ports):
 class JointOutputs(Ports):
     """The surface, how sure it is, and what it was made from.
 
-    ``depth_confidence`` is 1/(1 + variance of the disparity, px²). ``depth_sigma`` is in the unit of the
-    baseline, ``normals_sigma`` in radians. ``foreground`` is what stands before a void, everything where there
-    is none. ``weights`` are the candidates' parts in the blend, empty where there were none.
+    ``depth_confidence`` is 1/(1 + variance of the disparity, px²); on photographs the reliability of what was
+    taken. ``depth_sigma`` is in the unit of the baseline, ``normals_sigma`` in radians. ``foreground`` is what
+    stands before a void, everything where there is none. ``weights`` are the candidates' parts in the blend,
+    empty where there were none.
     """
 
     depth: Depth[Array, "H W"]
@@ -68,10 +69,11 @@ class JointOutputs(Ports):
 
 
 class _Surface(NamedTuple):
-    """Disparity and sigma (px), normals or None, their sigma, mask, weights."""
+    """Disparity and sigma (px), how sure it is, normals or None, their sigma, mask, weights."""
 
     disparity: Array
     sigma: Array
+    sure: Array
     normals: Array | None
     turned: Array
     foreground: Array
@@ -124,11 +126,13 @@ class Joint(Module[JointParams, JointInputs, JointOutputs]):
         said = [*(disparity_evidence(one, camera) for one in inputs.depth_evidence), *inputs.disparity_evidence]
         everywhere, unknown = np.ones(shape, bool), np.full(shape, np.nan, np.float32)
         if not said:
-            return _Surface(unknown, unknown, None, unknown, everywhere, np.zeros(0))
+            return _Surface(
+                unknown, unknown, np.zeros(shape, np.float32), None, unknown, everywhere, np.zeros(0)
+            )
         disparity, sigma, trust = preferred(said)
         with np.errstate(divide="ignore", invalid="ignore"):
             wide = sigma / np.sqrt(trust)
-        return _Surface(disparity, wide, None, unknown, everywhere, np.zeros(0))
+        return _Surface(disparity, wide, trust, None, unknown, everywhere, np.zeros(0))
 
 
 def _pair(inputs: JointInputs, camera: Camera) -> Pair | None:
@@ -155,7 +159,10 @@ def _of_objects(blend: Blend, pair: Pair) -> _Surface:
     disparity = np.where(inside, blend.disparity, pair.stereo).astype(np.float32)
     sigma = np.where(inside, blend.sigma, np.float32(np.nan))
     normals = np.where(inside[..., None], blend.normals, np.float32(np.nan))
-    return _Surface(disparity, sigma, normals, np.where(inside, blend.turned, np.nan), inside, blend.parts)
+    sure = np.where(inside, 1 / (1 + sigma**2), np.float32(0)).astype(np.float32)
+    return _Surface(
+        disparity, sigma, sure, normals, np.where(inside, blend.turned, np.nan), inside, blend.parts
+    )
 
 
 def _told(surface: _Surface, inputs: JointInputs, camera: Camera) -> JointOutputs:
@@ -164,12 +171,11 @@ def _told(surface: _Surface, inputs: JointInputs, camera: Camera) -> JointOutput
     own = normals_from_depth(depth, camera)
     given = own if surface.normals is None else surface.normals
     normals = np.where(np.isfinite(given).all(axis=-1, keepdims=True), given, own)
-    variance = np.where(np.isfinite(surface.sigma), surface.sigma, np.inf) ** 2
     with np.errstate(invalid="ignore"):
         deep = depth**2 * surface.sigma / np.float32(camera.focal_length * camera.baseline)
     return JointOutputs(
         depth=depth,
-        depth_confidence=(1 / (1 + variance)).astype(np.float32),
+        depth_confidence=surface.sure,
         depth_sigma=deep.astype(np.float32),
         normals=normals.astype(np.float32),
         normals_sigma=surface.turned.astype(np.float32),
