@@ -21,7 +21,7 @@ STEEPEST = 0.03
 
 def conics(cosine: Array, light: Array, camera: Camera) -> Array:
     """A to E and the steps they allow, float64 (H, W, 11), from ``cosine`` (H, W) and ``light`` (H, W, 3)."""
-    from visint_shading import _kernels
+    from visint_shading.heights import _kernels
 
     across, down = pixel_grid(camera)
     found = np.empty((*cosine.shape, 11))

@@ -21,7 +21,7 @@ def propagated(conic: Array, labels: Array, singular: Singular) -> Array:
     From convex points heights (depths) grow, from concave ones they fall; where both lead to a pixel the
     cheaper way counts, and their heights are tied by what is known at the points themselves.
     """
-    from visint_shading import _kernels
+    from visint_shading.heights import _kernels
 
     seeds = singular.bend[singular.group].astype(np.int8)
     base = _bases(singular, int(labels.max(initial=0)) + 1)

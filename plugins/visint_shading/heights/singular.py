@@ -59,7 +59,7 @@ def bends_of(group: Array, labels: Array, slopes: Array, reach: float) -> Array:
     From how ``slopes`` (H, W, 2) of ln Z − w₀ change around each group, within ``reach`` pixels of its middle
     and in its region. A principal bend below a fifth of the other counts as none (a cylinder).
     """
-    from visint_shading import _kernels
+    from visint_shading.heights import _kernels
 
     middles = _middles(group)
     sums = np.empty((len(middles), 10))
