@@ -42,7 +42,8 @@ def blended(pair: Pair, amplitude: float = 1.0) -> Blend:
         Of shading: 0 takes it out of the energy and keeps everything else.
     """
     if max(pair.left.shape) > LARGEST:
-        return _enlarged(blended(halved(pair), amplitude), pair)
+        small = halved(pair)
+        return _enlarged(blended(small, amplitude), small.inside, pair.left.shape)
     pool = candidates(pair, amplitude)
     signs = signs_of(pool, pair)
     which = "dark" if pool.setting.brightness is None else "lit"
@@ -69,10 +70,8 @@ def _with_hidden(surface: Array, pool: Pool) -> Array:
     return np.asarray(surface + np.minimum(1.5 * part, 1) * (filling - surface))
 
 
-def _enlarged(small: Blend, pair: Pair) -> Blend:
-    """The blend at the pair's own size: smooth maps go up linearly, and the image's detail decides the mask."""
-    inside = small.pool.setting.domain.inside
-    size = pair.left.shape
+def _enlarged(small: Blend, inside: Array, size: tuple[int, ...]) -> Blend:
+    """The blend at twice its size: what it knows ``inside`` goes up linearly, the image decides the mask."""
     disparity, sigma, turned = (
         enlarged(one, inside, size) for one in (small.disparity, small.sigma, small.turned)
     )

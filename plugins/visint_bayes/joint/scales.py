@@ -29,7 +29,7 @@ def _mean(field: Array) -> Array:
     return np.asarray(total / 4, np.float32)
 
 
-def enlarged(field: Array, inside: Array, size: tuple[int, int]) -> Array:
+def enlarged(field: Array, inside: Array, size: tuple[int, ...]) -> Array:
     """A map of the inside (H, W) at twice the size, linear in between; the outside takes the nearest inside.
 
     Values stay: disparities are to be doubled by the caller.

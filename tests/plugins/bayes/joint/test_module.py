@@ -77,3 +77,13 @@ def test_without_a_void_the_last_cue_that_speaks_is_taken():
     assert found.foreground.all()
     assert found.depth == pytest.approx(np.where(where, 10.0, 12.5) * np.ones((40, 1)))
     assert not len(found.weights)
+
+
+@pytest.mark.parametrize("largest", [60, 30])
+def test_images_of_any_size_are_solved_smaller_and_come_back_at_their_own(sphere, largest, monkeypatch):
+    """One halving or two: the surface has the image's size and is still better than its stereo's normals."""
+    monkeypatch.setattr("visint_bayes.joint.blend.LARGEST", largest)
+    given = {"left": sphere.left, "right": sphere.right, "camera": sphere.camera}
+    found = visint.run(visint.load("joint"), given | {"light": sphere.light})
+    assert found["normals"].shape == (96, 96, 3)
+    assert reduction(found, visint.run(visint.load("stereo"), given), sphere)[1] > 20
