@@ -81,7 +81,7 @@ def test_without_a_void_the_last_cue_that_speaks_is_taken():
 
 @pytest.mark.parametrize(("largest", "least"), [(60, 20), (30, -20)])
 def test_images_of_any_size_are_solved_smaller_and_come_back_at_their_own(sphere, largest, least, monkeypatch):
-    """One halving or two: the surface has the image's size; solved on a dozen pixels it is about its stereo's."""
+    """One halving or two: the surface has the image's size; solved on a dozen pixels it is about the stereo."""
     monkeypatch.setattr("visint_bayes.joint.blend.LARGEST", largest)
     given = {"left": sphere.left, "right": sphere.right, "camera": sphere.camera}
     found = visint.run(visint.load("joint"), given | {"light": sphere.light})
