@@ -70,7 +70,7 @@ def test_slopes_imply_the_same_bend():
 
 
 def test_a_line_belongs_to_the_side_it_is_like():
-    """Depth 1 on the left, 5 on the right, the line itself 4: it is the right side's; a loose end bars nothing."""
+    """Depth 1 on the left, 5 on the right, the line itself 4: it is the right side's; loose ends bar none."""
     depth = np.tile(np.float32([1, 1, 1, 4, 5, 5, 5]), (6, 1))
     line = np.zeros(depth.shape, bool)
     line[:, 3] = True

@@ -43,7 +43,8 @@ class Answer:
 
     def found(self, name: str, size: tuple[int, int]) -> tuple[Array, Array]:
         """Whether the assumption ``name`` held, bool by label, and the patches int32 (H, W) it is said of."""
-        rows, columns = ((np.arange(n) * k) // n for n, k in zip(size, self.patch.shape, strict=True))
+        (high, wide), (tall, broad) = size, np.shape(self.patch)
+        rows, columns = np.arange(high) * tall // high, np.arange(wide) * broad // wide
         held = np.array([False, *(each[name] for each in self.premises)])
         return held, self.patch[rows[:, None], columns[None, :]]
 
