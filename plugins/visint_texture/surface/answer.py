@@ -22,7 +22,7 @@ class Answer:
         self.sigma = sigma
         self.reliability = reliability
         self.clarity = clarity
-        self.patch = np.zeros(clarity.shape, np.int32)
+        self.patch: Array = np.zeros(clarity.shape, np.int32)
         self.premises: list[dict[str, bool]] = []
 
     @classmethod
@@ -43,8 +43,8 @@ class Answer:
 
     def found(self, name: str, size: tuple[int, int]) -> tuple[Array, Array]:
         """Whether the assumption ``name`` held, bool by label, and the patches int32 (H, W) it is said of."""
-        (high, wide), (tall, broad) = size, np.shape(self.patch)
-        rows, columns = np.arange(high) * tall // high, np.arange(wide) * broad // wide
+        rows = np.arange(size[0]) * self.patch.shape[0] // size[0]
+        columns = np.arange(size[1]) * self.patch.shape[1] // size[1]
         held = np.array([False, *(each[name] for each in self.premises)])
         return held, self.patch[rows[:, None], columns[None, :]]
 
