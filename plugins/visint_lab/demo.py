@@ -43,7 +43,7 @@ def command(
     pair = render(sphere_before_plane(size, seed))
     files = _written(pair, out.with_name(f"{out.resolve().name}-pair"))
     given = _wanted(bound, pair, files)
-    result = visint.run(bound, given)
+    result = visint.run(bound, given, options=visint.Options(attribution=True))
     result.save(out, force=force, sources={name: files[name] for name in files if name in given})
     said = comparison(result["depth"], pair)
     if as_json:
@@ -76,7 +76,10 @@ def _written(pair: Rendering, folder: Path) -> dict[str, Path]:
 
 
 def _wanted(graph: Graph, pair: Rendering, files: Mapping[str, Path]) -> dict[str, Any]:
-    """What the graph takes of the scene, read from the files that were written."""
+    """What the graph takes of the scene, read from the files that were written.
+
+    The light only if the graph cannot do without: a texture before a wall tells nothing of it.
+    """
     from visint.io import read_camera, read_image
 
     offered = {
@@ -85,6 +88,8 @@ def _wanted(graph: Graph, pair: Rendering, files: Mapping[str, Path]) -> dict[st
         "camera": read_camera(files["camera"]),
         "light": pair.light,
     }
+    if "light" in graph.inputs and graph.inputs["light"].optional:
+        del offered["light"]
     return {name: value for name, value in offered.items() if name in graph.inputs}
 
 

@@ -11,6 +11,7 @@ import visint
 from visint.graph import parse_graph
 from visint.registry import installed
 from visint_lab.render.rendering import render
+from visint_lab.scenes import scene
 from visint_lab.scenes.demonstration import sphere_before_plane
 
 GRAPHS = sorted((Path(__file__).parents[2] / "graphs").glob("*.yaml"))
@@ -18,9 +19,21 @@ every_graph = pytest.mark.parametrize("path", GRAPHS, ids=lambda path: path.stem
 
 
 @pytest.fixture(scope="module")
-def pair():
+def before_a_plane():
     """A textured sphere before a plane, whose truth is known; all that a graph can ask for is in it."""
     return render(sphere_before_plane(size=64, seed=0))
+
+
+@pytest.fixture(scope="module")
+def before_a_void():
+    """A shaded sphere before nothing: what the joint estimate has candidates and uncertain normals of."""
+    return render(scene("a/sphere/lambertian", 64))
+
+
+@pytest.fixture
+def pair(path, before_a_plane, before_a_void):
+    """The scene that a graph is for."""
+    return before_a_void if path.stem.startswith("joint") else before_a_plane
 
 
 def test_there_are_graphs_and_they_are_found_by_name():

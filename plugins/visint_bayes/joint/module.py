@@ -12,6 +12,7 @@ from visint.fields import Camera, DepthEvidence, DisparityEvidence, IncidenceEvi
 from visint.fields.geometry import depth_from_disparity, disparity_evidence, normals_from_depth
 from visint.module import Context, Module, Params, Ports
 from visint_bayes.joint.blend import Blend, blended
+from visint_bayes.joint.credit import of_objects, of_photographs
 from visint_bayes.joint.objects import pair_of
 from visint_bayes.joint.photographs import preferred
 from visint_bayes.joint.setting import Pair
@@ -56,7 +57,8 @@ class JointOutputs(Ports):
     ``depth_confidence`` is 1/(1 + variance of the disparity, px²); on photographs the reliability of what was
     taken. ``depth_sigma`` is in the unit of the baseline, ``normals_sigma`` in radians. ``foreground`` is what
     stands before a void, everything where there is none. ``weights`` are the candidates' parts in the blend,
-    empty where there were none.
+    empty where there were none. ``depth_weights`` are what each evidence has decided of every pixel, in the
+    order of the input ports.
     """
 
     depth: Depth[Array, "H W"]
@@ -66,10 +68,11 @@ class JointOutputs(Ports):
     normals_sigma: Sigma[Array, "H W"]
     foreground: Mask[Array, "H W"]
     weights: Scalars[Array, "N"]
+    depth_weights: tuple[Confidence[Array, "H W"], ...]
 
 
 class _Surface(NamedTuple):
-    """Disparity and sigma (px), how sure it is, normals or None, their sigma, mask, weights."""
+    """Disparity and sigma (px), how sure it is, normals or None, their sigma, mask, weights, credit."""
 
     disparity: Array
     sigma: Array
@@ -78,6 +81,7 @@ class _Surface(NamedTuple):
     turned: Array
     foreground: Array
     weights: Array
+    credit: tuple[Array, ...] = ()
 
 
 class Joint(Module[JointParams, JointInputs, JointOutputs]):
@@ -114,11 +118,13 @@ class Joint(Module[JointParams, JointInputs, JointOutputs]):
         camera = inputs.camera or Camera.uncalibrated(columns, rows)
         pair = _pair(inputs, camera)
         if pair is None:
+            if inputs.light is not None and inputs.light.place != "unknown":
+                ctx.warn("no void", "brightness is not used: no object stands out of a dark, even surround")
             return _told(self._of_evidence(inputs, camera), inputs, camera)
         blend = blended(pair, self.params.shading)
         ctx.check()
         _report(blend, ctx)
-        return _told(_of_objects(blend, pair), inputs, camera)
+        return _told(_of_objects(blend, pair, inputs), inputs, camera)
 
     @staticmethod
     def _of_evidence(inputs: JointInputs, camera: Camera) -> _Surface:
@@ -132,7 +138,11 @@ class Joint(Module[JointParams, JointInputs, JointOutputs]):
         disparity, sigma, trust = preferred(said)
         with np.errstate(divide="ignore", invalid="ignore"):
             wide = sigma / np.sqrt(trust)
-        return _Surface(disparity, wide, trust, None, unknown, everywhere, np.zeros(0))
+        deep, shifted = (
+            [one.reliability for one in each] for each in (inputs.depth_evidence, inputs.disparity_evidence)
+        )
+        credit = of_photographs(deep, shifted, len(inputs.incidence_evidence))
+        return _Surface(disparity, wide, trust, None, unknown, everywhere, np.zeros(0), credit)
 
 
 def _pair(inputs: JointInputs, camera: Camera) -> Pair | None:
@@ -153,16 +163,18 @@ def _report(blend: Blend, ctx: Context) -> None:
         ctx.assumed("lambertian_reflectance", not bool(found.shine.any()))
 
 
-def _of_objects(blend: Blend, pair: Pair) -> _Surface:
+def _of_objects(blend: Blend, pair: Pair, inputs: JointInputs) -> _Surface:
     """The blend inside the foreground, the stereo around it, of which nothing is known."""
     inside = pair.inside
     disparity = np.where(inside, blend.disparity, pair.stereo).astype(np.float32)
     sigma = np.where(inside, blend.sigma, np.float32(np.nan))
     normals = np.where(inside[..., None], blend.normals, np.float32(np.nan))
     sure = np.where(inside, 1 / (1 + sigma**2), np.float32(0)).astype(np.float32)
-    return _Surface(
-        disparity, sigma, sure, normals, np.where(inside, blend.turned, np.nan), inside, blend.parts
-    )
+    turned = np.where(inside, blend.turned, np.nan)
+    given = (inputs.disparity_evidence, inputs.depth_evidence, inputs.incidence_evidence)
+    parts = dict(zip(blend.pool.surfaces, blend.parts.tolist(), strict=True))
+    credit = of_objects(parts, inside, (len(given[0]), len(given[1]), len(given[2])))
+    return _Surface(disparity, sigma, sure, normals, turned, inside, blend.parts, credit)
 
 
 def _told(surface: _Surface, inputs: JointInputs, camera: Camera) -> JointOutputs:
@@ -181,4 +193,5 @@ def _told(surface: _Surface, inputs: JointInputs, camera: Camera) -> JointOutput
         normals_sigma=surface.turned.astype(np.float32),
         foreground=surface.foreground,
         weights=np.asarray(surface.weights, np.float64),
+        depth_weights=surface.credit,
     )
