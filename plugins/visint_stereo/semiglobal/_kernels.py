@@ -195,6 +195,18 @@ def aggregate(cost, shape, base, lean, pad, brightness, small, steep, total, way
 
 
 @njit(cache=True, nogil=True)
+def _first_of_least(total, at, depth):
+    """(level, cost): the first of the cheapest among ``depth`` levels from ``at`` on."""
+    low = np.uint16(65535)
+    for k in range(depth):
+        low = _least(low, total[at + k])
+    k = U(0)
+    while total[at + k] != low:
+        k += U(1)
+    return k, low
+
+
+@njit(cache=True, nogil=True)
 def winners(total, shape, best, least, second, crowd):
     """The cheapest level of each pixel, its cost, the second cost outside ±1, and how many come near it.
 
@@ -205,12 +217,7 @@ def winners(total, shape, best, least, second, crowd):
     for y in range(rows):
         for x in range(columns):
             at = U((y * columns + x) * wide)
-            low = np.uint16(65535)
-            for k in range(depth):
-                low = _least(low, total[at + k])
-            k = U(0)
-            while total[at + k] != low:
-                k += U(1)
+            k, low = _first_of_least(total, at, depth)
             best[y, x] = np.int32(k)
             least[y, x] = low
             limit = np.uint16(low + (low >> 3) + 24)
@@ -324,10 +331,5 @@ def cheapest(total, shape, first, base, disparity):
     for y in range(rows):
         for x in range(columns):
             at = U((y * columns + x) * wide)
-            low = np.uint16(65535)
-            for k in range(depth):
-                low = _least(low, total[at + k])
-            k = U(0)
-            while total[at + k] != low:
-                k += U(1)
+            k, _ = _first_of_least(total, at, depth)
             disparity[y, x] = np.float32(first + base[y, x] + np.int64(k))
